@@ -1,0 +1,54 @@
+// A rendered picture with its layers and counters: plain values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/scene/camera.h"
+#include "core/scene/scene.h"
+#include "core/trace/counts.h"
+#include "core/tree/verdict.h"
+
+namespace linetree {
+
+// Where an answer came from. Values are those of the wire format.
+enum class Source : uint8_t { kBackground = 0, kInterpolated = 1, kTraced = 2 };
+
+// Counters of one frame or batch. interpolated + traced + background == pixels.
+struct FrameStats {
+  uint64_t pixels = 0;
+  uint64_t interpolated = 0;
+  uint64_t traced = 0;
+  uint64_t background = 0;
+  RayCounts base;  // to answer (eye rays included)
+  RayCounts ip;    // to build interpolants
+  std::array<uint64_t, kVerdictCount> verdicts{};  // pixels by verdict
+  uint64_t cells_tried = 0;
+  uint64_t cells_accepted = 0;
+  uint64_t cells_evicted = 0;
+  uint64_t cache_bytes = 0;  // after the frame
+  double wall_ms = 0;
+  double cpu_ms = 0;  // summed over the threads that worked on it
+
+  // Sums counters and times; cache_bytes is taken from `o`.
+  FrameStats& operator+=(const FrameStats& o);
+};
+
+// Row-major, row 0 on top.
+struct Frame {
+  int width = 0;
+  int height = 0;
+  std::vector<float> radiance;   // 3 * width * height, linear RGB
+  std::vector<int32_t> object;   // index of the object seen, -1 for the background
+  std::vector<Source> source;
+  std::vector<Verdict> verdict;
+  std::vector<float> depth;      // distance from the eye; infinity for the background
+  Camera camera;
+  double max_relative_error = 0;
+  SceneVersion scene_version;
+  FrameStats stats;
+};
+
+}  // namespace linetree

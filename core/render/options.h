@@ -1,0 +1,33 @@
+// What a caller may ask of a frame or batch of rays: one plain struct, validated once.
+#pragma once
+
+#include "absl/status/status.h"
+#include "core/trace/tracer.h"
+
+namespace linetree {
+
+enum class Mode { kCached, kClassical };
+enum class JudgeKind { kPaper };
+
+struct RenderOptions {
+  Mode mode = Mode::kCached;
+  JudgeKind judge = JudgeKind::kPaper;
+  // The promise: |answer - classical| <= max_relative_error * max(classical, RadianceFloor(scene)).
+  double max_relative_error = 0.1;
+  PathLimits limits;
+};
+
+// Largest picture and batch that are accepted.
+struct RenderLimits {
+  int max_side = 16384;
+  uint64_t max_pixels = uint64_t{1} << 26;
+  uint64_t max_rays = uint64_t{1} << 20;
+};
+
+// OK, or INVALID_ARGUMENT naming the field (as in service.proto) and what was expected.
+absl::Status ValidateOptions(const RenderOptions& options);
+
+// OK, INVALID_ARGUMENT for a size below 1, RESOURCE_EXHAUSTED for one beyond the limits.
+absl::Status ValidateSize(int64_t width, int64_t height, const RenderLimits& limits);
+
+}  // namespace linetree

@@ -1,0 +1,30 @@
+// Ray counters: returned values that callers sum; nothing global.
+#pragma once
+
+#include <cstdint>
+
+namespace linetree {
+
+struct RayCounts {
+  uint64_t eye = 0;
+  uint64_t reflected = 0;  // total internal reflection included
+  uint64_t refracted = 0;
+  uint64_t shadow = 0;
+  // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray), Shade a
+  // radiance computation at a point.
+  uint64_t intersect = 0;
+  uint64_t shade = 0;
+
+  RayCounts& operator+=(const RayCounts& o) {
+    eye += o.eye;
+    reflected += o.reflected;
+    refracted += o.refracted;
+    shadow += o.shadow;
+    intersect += o.intersect;
+    shade += o.shade;
+    return *this;
+  }
+  bool operator==(const RayCounts&) const = default;
+};
+
+}  // namespace linetree

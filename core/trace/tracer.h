@@ -1,0 +1,77 @@
+// The classical (Whitted) tracer: the reference of every error figure (DESIGN: scene and shading).
+//
+// Templated on its scalar S. Tracer = TracerOf<double> is the reference; the same code in a wider
+// type measures the reference's own rounding. Thread safety: all methods are const and may be called
+// from any number of threads.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/trace/bvh.h"
+#include "core/trace/counts.h"
+#include "core/trace/hit.h"
+#include "core/trace/ray_tree.h"
+
+namespace linetree {
+
+// Where paths end. What lies beyond is black.
+struct PathLimits {
+  int max_depth = 4;         // rays on a path, the eye ray counted; in [1, kMaxPathDepth]
+  double min_weight = 0.01;  // a branch of smaller weight is not cast; in [0, 1]
+  bool operator==(const PathLimits&) const = default;
+};
+inline constexpr int kMaxPathDepth = 16;
+
+enum class Hierarchy { kAuto, kFlat, kBvh };
+// kAuto uses the BVH above this many objects.
+inline constexpr size_t kFlatLimit = 32;
+
+// The answer for one ray.
+struct Traced {
+  Rgb radiance;
+  Hit hit;  // of the ray itself
+};
+
+template <class S>
+class TracerOf {
+ public:
+  // Keeps a reference to the scene, which must outlive the tracer.
+  explicit TracerOf(const Scene& scene, Hierarchy hierarchy = Hierarchy::kAuto);
+
+  const Scene& scene() const { return *scene_; }
+
+  // The nearest hit with t > 0. Counts nothing; see counts.intersect.
+  HitOf<S> Intersect(const Vec3<S>& origin, const Vec3<S>& direction, const RayStart& start) const;
+
+  // The first crossing of one object by the whole line (t unbounded below), as linetrees see it: the
+  // hit of a ray that comes from infinity. Not a hit when the line misses the object.
+  HitOf<S> IntersectObjectLine(int object, const Vec3<S>& origin, const Vec3<S>& direction) const;
+
+  // Light arriving at `point` from light `light` along the segment: LightState kLit or kBlocked and
+  // the filter V_l. `start` is the surface that the shadow ray leaves.
+  struct Shadow {
+    LightTerm term;
+    RgbOf<S> filter;
+  };
+  Shadow CastShadow(const Vec3<S>& point, int light, const RayStart& start) const;
+
+  // Whether one object alone blocks the way from `point` to the light (any of its surfaces; whether
+  // it is opaque is not asked).
+  bool ObjectBlocks(int object, const Vec3<S>& point, int light, const RayStart& start) const;
+
+  // Radiance along an eye ray. With `tree`, also its ray tree (in double). Adds to counts.
+  RgbOf<S> Radiance(const Vec3<S>& origin, const Vec3<S>& direction, const PathLimits& limits,
+                    RayCounts& counts, RayTree* tree = nullptr) const;
+
+  // Radiance of an eye ray whose first hit is known. Counts no eye ray and no Intersect for it.
+  RgbOf<S> RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin, const Vec3<S>& direction,
+                           const PathLimits& limits, RayCounts& counts,
+                           RayTree* tree = nullptr) const;
+
+  // The objects' hierarchy; null when the tracer is flat.
+  const Bvh* bvh() const { return bvh_.get(); }
+};
+
+}  // namespace linetree
