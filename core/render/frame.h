@@ -47,6 +47,7 @@ struct Frame {
   std::vector<float> depth;      // distance from the eye; infinity for the background
   Camera camera;
   double max_relative_error = 0;
+  double white = 1;              // Scene::white: what a picture shows as white
   SceneVersion scene_version;
   FrameStats stats;
 };
