@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs all tests: everything in Release, everything but the
+# long picture comparisons again under address and undefined-behaviour sanitizers, and the core
+# again under the thread sanitizer. Ends with one line as ctest writes it; the status is 0 only
+# when everything was built and every test passed.
+set -uo pipefail
+cd "$(dirname "$0")" || exit 1
+
+usage() {
+  cat <<'TEXT'
+usage: ./test.sh [--quick] [--stage Release|Asan|Tsan]... [--help]
+  --quick       Release only (the same as --stage Release)
+  --stage TYPE  only these build types, in the order given
+  --help        this text
+Environment:
+  LINETREE_TEST_JOBS  tests that run at the same time (default: one a core)
+Builds go to build/release, build/asan and build/tsan.
+TEXT
+}
+
+stages=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --quick) stages+=(Release) ;;
+    --stage)
+      case "${2-}" in
+        Release | Asan | Tsan) stages+=("$2"); shift ;;
+        *) echo "--stage: expected Release, Asan or Tsan, got '${2-}'" >&2; exit 2 ;;
+      esac ;;
+    --help | -h) usage; exit 0 ;;
+    *) echo "unknown option '$1'" >&2; usage >&2; exit 2 ;;
+  esac
+  shift
+done
+[ "${#stages[@]}" -eq 0 ] && stages=(Release Asan Tsan)
+
+.ci/install || exit 1
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+total=0
+failed=0
+broken=()
+summary=()
+
+# Tests that a sanitizer build would only repeat: pictures against other programs, where the code
+# under test is the same as in the unit tests, and the checks of the source text.
+excluded_of() {
+  case "$1" in
+    Release) echo '^$' ;;
+    Asan | Tsan) echo '^(oracle|house)$' ;;
+  esac
+}
+
+# Debian's kernel may place memory where the thread sanitizer cannot map its shadow; a fixed layout
+# is what it was built for.
+launcher_of() {
+  [ "$1" = Tsan ] && command -v setarch >/dev/null && setarch -R true 2>/dev/null &&
+    echo "setarch -R"
+}
+
+run_stage() {
+  local type=$1 counts launcher
+  echo "== $type"
+  if ! .ci/build "$type"; then
+    broken+=("$type did not build")
+    return
+  fi
+  launcher=$(launcher_of "$type")
+  # shellcheck disable=SC2086  # the launcher is a command with its option, or nothing
+  $launcher ctest --test-dir "build/${type,,}" --output-on-failure \
+    --parallel "${LINETREE_TEST_JOBS:-$(nproc)}" --label-exclude "$(excluded_of "$type")" |
+    tee "$log"
+  local status=${PIPESTATUS[0]}
+  counts=$(sed -nE 's/^.*tests passed, ([0-9]+) tests? failed out of ([0-9]+).*$/\1 \2/p' "$log")
+  if [ -z "$counts" ]; then
+    broken+=("$type ran no tests")
+    return
+  fi
+  read -r stage_failed stage_total <<<"$counts"
+  failed=$((failed + stage_failed))
+  total=$((total + stage_total))
+  summary+=("$type $((stage_total - stage_failed))/$stage_total")
+  if [ "$status" -ne 0 ] && [ "$stage_failed" -eq 0 ]; then
+    broken+=("$type: ctest ended with status $status")
+  fi
+}
+
+for stage in "${stages[@]}"; do
+  run_stage "$stage"
+done
+
+# A stage that broke counts as one test that failed, so that the last line never looks better than
+# the run was.
+echo
+for problem in "${broken[@]}"; do
+  echo "FAILED: $problem"
+done
+failed=$((failed + ${#broken[@]}))
+total=$((total + ${#broken[@]}))
+printf 'Passed: %s\n' "${summary[@]}"
+echo "$(((total - failed) * 100 / total))% tests passed, $failed tests failed out of $total"
+[ "$failed" -eq 0 ]
