@@ -1,0 +1,34 @@
+// Closed loops of vertices in one plane: what a polygon of a scene file is before it is known to be
+// convex.
+#pragma once
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/math/vec3.h"
+
+namespace linetree {
+
+// How far vertices may lie from their plane, relative to the largest magnitude of a coordinate:
+// files with six significant digits (NFF) are off by 5e-6 per coordinate, and so is the plane.
+inline constexpr double kPlanarityTolerance = 2e-5;
+
+// Vertices that are closer to each other, or to the line through their neighbours, than this
+// fraction of the loop's extent are one vertex, or none: a few hundred roundings of double
+// arithmetic. A loop that is thinner than this is degenerate.
+inline constexpr double kLoopTolerance = 0x1p-42;
+
+struct PlanarLoop {
+  std::vector<Vec3d> vertices;  // moved into the plane; no repeated or collinear neighbours
+  Vec3d normal;                 // unit; the loop runs counter-clockwise about it
+  bool convex = false;          // strictly, and winds once
+};
+
+// INVALID_ARGUMENT "vertices: expected ..." for fewer than three vertices, infinite ones, loops
+// without area and loops that are not planar. Whether the loop crosses itself is not looked at.
+absl::StatusOr<PlanarLoop> MakePlanarLoop(const std::vector<Vec3d>& vertices);
+
+// Twice the area, along the normal about which the loop runs counter-clockwise.
+Vec3d AreaVector(const std::vector<Vec3d>& vertices);
+
+}  // namespace linetree
