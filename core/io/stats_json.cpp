@@ -1,0 +1,49 @@
+#include "core/io/stats_json.h"
+
+#include <cmath>
+
+namespace linetree {
+
+nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
+  RayCounts total = stats.base;
+  total += stats.ip;
+  nlohmann::json verdicts = nlohmann::json::object();
+  for (size_t i = 0; i < stats.verdicts.size(); ++i) {
+    verdicts[std::string(kVerdictNames[i])] = stats.verdicts[i];
+  }
+  return {{"width", width},
+          {"height", height},
+          {"pixels", stats.pixels},
+          {"eye_rays", total.eye},
+          {"reflected_rays", total.reflected},
+          {"refracted_rays", total.refracted},
+          {"shadow_rays", total.shadow},
+          {"intersect", total.intersect},
+          {"shade", total.shade},
+          {"base_intersect", stats.base.intersect},
+          {"base_shade", stats.base.shade},
+          {"ip_intersect", stats.ip.intersect},
+          {"ip_shade", stats.ip.shade},
+          {"interpolated", stats.interpolated},
+          {"traced", stats.traced},
+          {"background", stats.background},
+          {"verdicts", std::move(verdicts)},
+          {"cells_tried", stats.cells_tried},
+          {"cells_accepted", stats.cells_accepted},
+          {"cells_evicted", stats.cells_evicted},
+          {"cache_bytes", stats.cache_bytes},
+          {"wall_ms", JsonNumber(stats.wall_ms)},
+          {"cpu_ms", JsonNumber(stats.cpu_ms)}};
+}
+
+double HitRate(const FrameStats& stats) {
+  const uint64_t hits = stats.interpolated + stats.traced;
+  return hits == 0 ? 0 : static_cast<double>(stats.interpolated) / static_cast<double>(hits);
+}
+
+nlohmann::json JsonNumber(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return value;
+}
+
+}  // namespace linetree
