@@ -1,0 +1,178 @@
+#include "core/io/wire_frame.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "core/io/wire.h"
+#include "core/math/check.h"
+
+namespace linetree {
+namespace {
+
+// Index of the first pixel of row `row` of the tile within the frame.
+size_t RowStart(const v1::Tile& tile, int row, int frame_width) {
+  return (tile.y() + static_cast<size_t>(row)) * static_cast<size_t>(frame_width) + tile.x();
+}
+
+template <class Values, class Value>
+void AppendRow(const std::vector<Value>& layer, size_t start, size_t count, Values* out) {
+  const auto first = layer.begin() + static_cast<std::ptrdiff_t>(start);
+  out->Add(first, first + static_cast<std::ptrdiff_t>(count));
+}
+
+template <class Value>
+void AppendBytes(const std::vector<Value>& layer, size_t start, size_t count, std::string* out) {
+  for (size_t i = start; i < start + count; ++i) out->push_back(static_cast<char>(layer[i]));
+}
+
+bool AllBelow(const std::string& bytes, int limit) {
+  return std::all_of(bytes.begin(), bytes.end(),
+                     [limit](char c) { return static_cast<unsigned char>(c) < limit; });
+}
+
+}  // namespace
+
+bool FrameChunks::Next(v1::FrameChunk* chunk) {
+  if (ended_) return false;
+  if (y_ >= frame_.height) {
+    ended_ = true;
+    FillEnd(chunk->mutable_end());
+    return true;
+  }
+  FillTile(chunk->mutable_tile());
+  x_ += kWireTileSide;
+  if (x_ >= frame_.width) {
+    x_ = 0;
+    y_ += kWireTileSide;
+  }
+  return true;
+}
+
+void FrameChunks::FillTile(v1::Tile* tile) const {
+  tile->Clear();
+  const int width = std::min(kWireTileSide, frame_.width - x_);
+  const int height = std::min(kWireTileSide, frame_.height - y_);
+  tile->set_x(static_cast<uint32_t>(x_));
+  tile->set_y(static_cast<uint32_t>(y_));
+  tile->set_width(static_cast<uint32_t>(width));
+  tile->set_height(static_cast<uint32_t>(height));
+  tile->mutable_radiance()->Reserve(3 * width * height);
+  const auto count = static_cast<size_t>(width);
+  for (int row = 0; row < height; ++row) {
+    const size_t start = RowStart(*tile, row, frame_.width);
+    AppendRow(frame_.radiance, 3 * start, 3 * count, tile->mutable_radiance());
+    if (!all_layers_) continue;
+    AppendRow(frame_.object, start, count, tile->mutable_object());
+    AppendBytes(frame_.source, start, count, tile->mutable_source());
+    AppendBytes(frame_.verdict, start, count, tile->mutable_verdict());
+    AppendRow(frame_.depth, start, count, tile->mutable_depth());
+  }
+}
+
+void FrameChunks::FillEnd(v1::FrameEnd* end) const {
+  end->set_scene_version(frame_.scene_version);
+  *end->mutable_stats() = FrameStatsToWire(frame_.stats, frame_.width, frame_.height);
+  *end->mutable_camera() = CameraToWire(frame_.camera);
+  end->set_max_relative_error(frame_.max_relative_error);
+  end->set_white(frame_.white);
+}
+
+FrameAssembler::FrameAssembler(int width, int height, bool all_layers) : all_layers_(all_layers) {
+  LT_CHECK(width > 0 && height > 0);
+  const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
+  frame_.width = width;
+  frame_.height = height;
+  frame_.radiance.resize(3 * pixels);
+  filled_.resize(pixels);
+  if (!all_layers) return;
+  frame_.object.resize(pixels);
+  frame_.source.resize(pixels);
+  frame_.verdict.resize(pixels);
+  frame_.depth.resize(pixels);
+}
+
+absl::Status FrameAssembler::Add(const v1::FrameChunk& chunk) {
+  if (complete_) return absl::DataLossError("a chunk came after the end of its frame");
+  switch (chunk.content_case()) {
+    case v1::FrameChunk::kTile:
+      return AddTile(chunk.tile());
+    case v1::FrameChunk::kEnd:
+      return AddEnd(chunk.end());
+    case v1::FrameChunk::CONTENT_NOT_SET:
+      break;
+  }
+  return absl::DataLossError("a chunk came with neither a tile nor an end");
+}
+
+absl::Status FrameAssembler::CheckTile(const v1::Tile& tile) const {
+  const uint64_t width = tile.width();
+  const uint64_t height = tile.height();
+  if (width == 0 || height == 0 || tile.x() + width > static_cast<uint64_t>(frame_.width) ||
+      tile.y() + height > static_cast<uint64_t>(frame_.height)) {
+    return absl::DataLossError(absl::StrCat("a tile lies outside its frame: ", width, "x", height,
+                                            " at ", tile.x(), ",", tile.y()));
+  }
+  const auto pixels = static_cast<size_t>(width * height);
+  const size_t layer = all_layers_ ? pixels : 0;
+  if (static_cast<size_t>(tile.radiance_size()) != 3 * pixels ||
+      static_cast<size_t>(tile.object_size()) != layer || tile.source().size() != layer ||
+      tile.verdict().size() != layer || static_cast<size_t>(tile.depth_size()) != layer) {
+    return absl::DataLossError("a tile came with a layer of the wrong length");
+  }
+  if (!AllBelow(tile.source(), v1::Source_ARRAYSIZE) || !AllBelow(tile.verdict(), kVerdictCount)) {
+    return absl::DataLossError("a tile came with an unknown source or verdict");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameAssembler::AddTile(const v1::Tile& tile) {
+  if (auto status = CheckTile(tile); !status.ok()) return status;
+  const auto width = static_cast<size_t>(tile.width());
+  for (int row = 0; row < static_cast<int>(tile.height()); ++row) {
+    const size_t start = RowStart(tile, row, frame_.width);
+    for (size_t i = start; i < start + width; ++i) {
+      if (filled_[i]) return absl::DataLossError("two tiles of a frame overlap");
+      filled_[i] = true;
+    }
+    CopyRow(tile, static_cast<size_t>(row) * width, start);
+    pixels_filled_ += width;
+  }
+  return absl::OkStatus();
+}
+
+void FrameAssembler::CopyRow(const v1::Tile& tile, size_t from, size_t to) {
+  const size_t width = tile.width();
+  std::copy_n(tile.radiance().data() + 3 * from, 3 * width, frame_.radiance.data() + 3 * to);
+  if (!all_layers_) return;
+  std::copy_n(tile.object().data() + from, width, frame_.object.data() + to);
+  std::copy_n(tile.depth().data() + from, width, frame_.depth.data() + to);
+  for (size_t i = 0; i < width; ++i) {
+    frame_.source[to + i] = static_cast<Source>(tile.source()[from + i]);
+    frame_.verdict[to + i] = static_cast<Verdict>(tile.verdict()[from + i]);
+  }
+}
+
+absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
+  if (pixels_filled_ != filled_.size()) {
+    return absl::DataLossError(
+        absl::StrCat("a frame ended with ", pixels_filled_, " of ", filled_.size(), " pixels"));
+  }
+  frame_.scene_version = end.scene_version();
+  frame_.stats = FrameStatsFromWire(end.stats());
+  frame_.camera = CameraFromWire(end.camera());
+  frame_.max_relative_error = end.max_relative_error();
+  frame_.white = end.white();
+  complete_ = true;
+  return absl::OkStatus();
+}
+
+double FrameAssembler::share_done() const {
+  return static_cast<double>(pixels_filled_) / static_cast<double>(filled_.size());
+}
+
+Frame FrameAssembler::Take() {
+  LT_CHECK(complete_);
+  return std::move(frame_);
+}
+
+}  // namespace linetree

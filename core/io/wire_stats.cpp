@@ -1,0 +1,78 @@
+// Counters of frames and batches; the rest of wire.h is in wire.cpp.
+#include "core/io/wire.h"
+
+namespace linetree {
+namespace {
+
+RayCounts Sum(RayCounts a, const RayCounts& b) { return a += b; }
+
+}  // namespace
+
+v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) {
+  v1::FrameStats message;
+  message.set_width(static_cast<uint32_t>(width));
+  message.set_height(static_cast<uint32_t>(height));
+  message.set_pixels(stats.pixels);
+  const RayCounts all = Sum(stats.base, stats.ip);
+  message.set_eye_rays(all.eye);
+  message.set_reflected_rays(all.reflected);
+  message.set_refracted_rays(all.refracted);
+  message.set_shadow_rays(all.shadow);
+  message.set_ip_eye_rays(stats.ip.eye);
+  message.set_ip_reflected_rays(stats.ip.reflected);
+  message.set_ip_refracted_rays(stats.ip.refracted);
+  message.set_ip_shadow_rays(stats.ip.shadow);
+  message.set_intersect(all.intersect);
+  message.set_shade(all.shade);
+  message.set_base_intersect(stats.base.intersect);
+  message.set_base_shade(stats.base.shade);
+  message.set_ip_intersect(stats.ip.intersect);
+  message.set_ip_shade(stats.ip.shade);
+  message.set_interpolated(stats.interpolated);
+  message.set_traced(stats.traced);
+  message.set_background(stats.background);
+  for (size_t v = 0; v < kVerdictCount; ++v) {
+    if (stats.verdicts[v] == 0) continue;
+    (*message.mutable_verdicts())[std::string(kVerdictNames[v])] = stats.verdicts[v];
+  }
+  message.set_cells_tried(stats.cells_tried);
+  message.set_cells_accepted(stats.cells_accepted);
+  message.set_cells_evicted(stats.cells_evicted);
+  message.set_cache_bytes(stats.cache_bytes);
+  message.set_wall_ms(stats.wall_ms);
+  message.set_cpu_ms(stats.cpu_ms);
+  return message;
+}
+
+FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
+  FrameStats stats;
+  stats.pixels = message.pixels();
+  stats.interpolated = message.interpolated();
+  stats.traced = message.traced();
+  stats.background = message.background();
+  stats.ip = {.eye = message.ip_eye_rays(),
+              .reflected = message.ip_reflected_rays(),
+              .refracted = message.ip_refracted_rays(),
+              .shadow = message.ip_shadow_rays(),
+              .intersect = message.ip_intersect(),
+              .shade = message.ip_shade()};
+  stats.base = {.eye = message.eye_rays() - stats.ip.eye,
+                .reflected = message.reflected_rays() - stats.ip.reflected,
+                .refracted = message.refracted_rays() - stats.ip.refracted,
+                .shadow = message.shadow_rays() - stats.ip.shadow,
+                .intersect = message.base_intersect(),
+                .shade = message.base_shade()};
+  for (size_t v = 0; v < kVerdictCount; ++v) {
+    const auto found = message.verdicts().find(std::string(kVerdictNames[v]));
+    if (found != message.verdicts().end()) stats.verdicts[v] = found->second;
+  }
+  stats.cells_tried = message.cells_tried();
+  stats.cells_accepted = message.cells_accepted();
+  stats.cells_evicted = message.cells_evicted();
+  stats.cache_bytes = message.cache_bytes();
+  stats.wall_ms = message.wall_ms();
+  stats.cpu_ms = message.cpu_ms();
+  return stats;
+}
+
+}  // namespace linetree
