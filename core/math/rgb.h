@@ -29,8 +29,8 @@ template <class A, class B>
 auto operator*(const RgbOf<A>& a, const RgbOf<B>& b) -> RgbOf<decltype(a.r * b.r)> {
   return {a.r * b.r, a.g * b.g, a.b * b.b};
 }
-template <class S>
-RgbOf<S> Scaled(const RgbOf<S>& a, const S& k) {
+template <class A, class B>
+auto Scaled(const RgbOf<A>& a, const B& k) -> RgbOf<decltype(a.r * k)> {
   return {a.r * k, a.g * k, a.b * k};
 }
 inline double MaxChannel(const Rgb& a) { return std::max({a.r, a.g, a.b}); }

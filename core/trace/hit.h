@@ -1,7 +1,7 @@
 // What rays meet, and how spawned rays leave.
 //
-// No ray is ever offset. A ray that leaves a surface remembers the surface and the side it leaves on
-// (RayStart), and the object excludes the start combinatorially: a ray leaving a convex object's
+// No ray is ever offset. A ray that leaves a surface remembers the surface and the side it leaves
+// on (RayStart), and the object excludes the start combinatorially: a ray leaving a convex object's
 // outside cannot meet it again; a ray inside meets only the far side.
 #pragma once
 
@@ -16,7 +16,8 @@ enum class Side : unsigned char {
   kInside,
 };
 
-// Where a ray starts. Free: anywhere (eye rays). Otherwise on `face` of `object`, leaving into `side`.
+// Where a ray starts. Free: anywhere (eye rays). Otherwise on `face` of `object`, leaving into
+// `side`.
 struct RayStart {
   int object = kNoObject;
   int face = 0;

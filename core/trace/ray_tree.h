@@ -1,8 +1,8 @@
 // The ray tree of one ray (paper section 5): what its radiance is made of.
 //
 // Nodes are stored in the order in which they are visited (parent first, reflected before
-// transmitted). Geometry is kept beside the labels because the judges need it: shafts are built from
-// the points, peaks from directions and normals.
+// transmitted). Geometry is kept beside the labels because the judges need it: shafts are built
+// from the points, peaks from directions and normals.
 #pragma once
 
 #include <cstdint>
@@ -41,15 +41,15 @@ enum class NodeKind : uint8_t {
 struct RayTreeNode {
   NodeKind kind = NodeKind::kSurface;
   Branch branch = Branch::kEye;
-  Side side = Side::kOutside;        // the side that the ray comes from
-  bool total_reflection = false;     // this surface reflects totally: only a kReflected child
-  bool leaves_denser_medium = false; // refraction at this surface goes from dense to sparse
+  Side side = Side::kOutside;         // the side that the ray comes from
+  bool total_reflection = false;      // this surface reflects totally: only a kReflected child
+  bool leaves_denser_medium = false;  // refraction at this surface goes from dense to sparse
   int32_t object = kNoObject;
   int32_t face = 0;
   int32_t parent = -1;
   int32_t first_light = -1;  // index into lights of light 0's term; -1 unless kSurface
   Vec3d origin;              // of the ray
-  Vec3d direction;           // of the ray, unit
+  Vec3d direction;           // of the ray, unit; zero for kCutOff
   Vec3d point;               // kSurface: the hit
   Vec3d normal;              // kSurface: shading normal, turned towards the origin
 };
@@ -65,7 +65,8 @@ struct RayTree {
 };
 
 // Whether two nodes carry the same label (kind, branch, side, object, face, total reflection,
-// parent). Lights are compared apart, because "blocked" needs one common occluder, not equal labels.
+// parent). Lights are compared apart, because "blocked" needs one common occluder, not equal
+// labels.
 bool SameLabel(const RayTreeNode& a, const RayTreeNode& b);
 
 // Isomorphic ray trees: node labels and light states agree. `occluder` is not compared.

@@ -1,8 +1,8 @@
 // The classical (Whitted) tracer: the reference of every error figure (DESIGN: scene and shading).
 //
 // Templated on its scalar S. Tracer = TracerOf<double> is the reference; the same code in a wider
-// type measures the reference's own rounding. Thread safety: all methods are const and may be called
-// from any number of threads.
+// type measures the reference's own rounding. Thread safety: all methods are const and may be
+// called from any number of threads.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 #include "core/trace/bvh.h"
 #include "core/trace/counts.h"
 #include "core/trace/hit.h"
+#include "core/trace/media.h"
 #include "core/trace/ray_tree.h"
 
 namespace linetree {
@@ -42,15 +43,20 @@ class TracerOf {
 
   const Scene& scene() const { return *scene_; }
 
-  // The nearest hit with t > 0. Counts nothing; see counts.intersect.
+  const Media& media() const { return media_; }
+
+  // The nearest hit with t > 0 (t = 0 only for a grazing exit from the solid that the ray starts
+  // inside). Of objects met at the same t the one with the smallest index. `direction` may have any
+  // length. Counts nothing; see counts.intersect.
   HitOf<S> Intersect(const Vec3<S>& origin, const Vec3<S>& direction, const RayStart& start) const;
 
-  // The first crossing of one object by the whole line (t unbounded below), as linetrees see it: the
-  // hit of a ray that comes from infinity. Not a hit when the line misses the object.
+  // The first crossing of one object by the whole line (t unbounded below), as linetrees see it:
+  // the hit of a ray that comes from infinity. Not a hit when the line misses the object.
   HitOf<S> IntersectObjectLine(int object, const Vec3<S>& origin, const Vec3<S>& direction) const;
 
   // Light arriving at `point` from light `light` along the segment: LightState kLit or kBlocked and
-  // the filter V_l. `start` is the surface that the shadow ray leaves.
+  // the filter V_l (black when blocked). `start` is the surface that the shadow ray leaves. Which
+  // of several occluders the term names is not specified.
   struct Shadow {
     LightTerm term;
     RgbOf<S> filter;
@@ -61,7 +67,8 @@ class TracerOf {
   // it is opaque is not asked).
   bool ObjectBlocks(int object, const Vec3<S>& point, int light, const RayStart& start) const;
 
-  // Radiance along an eye ray. With `tree`, also its ray tree (in double). Adds to counts.
+  // Radiance along an eye ray, whose direction is unit. With `tree`, also its ray tree (in double;
+  // the vectors' capacity is reused). Adds to counts.
   RgbOf<S> Radiance(const Vec3<S>& origin, const Vec3<S>& direction, const PathLimits& limits,
                     RayCounts& counts, RayTree* tree = nullptr) const;
 
@@ -72,6 +79,23 @@ class TracerOf {
 
   // The objects' hierarchy; null when the tracer is flat.
   const Bvh* bvh() const { return bvh_.get(); }
+
+ private:
+  // fn(int object) -> bool (false ends the search) for all objects that the ray may meet up to
+  // t_max.
+  template <class ObjectFn>
+  void ForEachAlong(const Vec3<S>& origin, const Vec3<S>& direction, const S& t_max,
+                    ObjectFn&& fn) const;
+
+  const Shape& ShapeOf(int object) const {
+    return scene_->objects[static_cast<size_t>(object)].shape;
+  }
+
+  const Scene* scene_;
+  Media media_;
+  std::unique_ptr<const Bvh> bvh_;
 };
+
+using Tracer = TracerOf<double>;
 
 }  // namespace linetree

@@ -1,0 +1,81 @@
+// The shading formula's terms (DESIGN: scene and shading), as pure functions: whoever evaluates a
+// term again, from the same arguments, gets the same bits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/math/rgb.h"
+#include "core/math/vec3.h"
+#include "core/scene/light.h"
+#include "core/scene/material.h"
+
+namespace linetree {
+
+// How a light is seen from a point.
+template <class S>
+struct LightView {
+  Vec3<S> to_light;  // unit
+  S fall_off;        // factor on Light::irradiance
+};
+template <class S>
+LightView<S> ViewOf(const Light& light, const Vec3<S>& point) {
+  if (light.kind == LightKind::kDirectional) return {CastVec3<S>(light.to_light), S(1)};
+  const Vec3<S> segment = -(point - light.position);
+  const S distance = Length(segment);
+  return {segment * (S(1) / distance), FallOff(light, distance)};
+}
+
+// Whether a material answers to lights at all.
+inline bool UsesLights(const Material& material) {
+  return !IsBlack(material.diffuse) || !IsBlack(material.specular);
+}
+
+template <class S>
+RgbOf<S> AmbientTerm(const Material& material, const Rgb& ambient) {
+  return Scaled(material.ambient * ambient, S(1));
+}
+
+// (n.h)^exponent with n.h clamped to [0, 1], h halfway between the unit vectors l and v.
+template <class S>
+S Highlight(double exponent, const Vec3<S>& n, const Vec3<S>& l, const Vec3<S>& v) {
+  using std::pow;
+  const Vec3<S> sum = l + v;
+  const S length = Length(sum);
+  if (!(length > 0)) return S(0);
+  return pow(std::clamp(S(Dot(n, sum) / length), S(0), S(1)), S(exponent));
+}
+
+// E_l ( kd (n.l) + ks (n.h)^m ) for cosine = n.l > 0, before the filter V_l.
+template <class S>
+RgbOf<S> LightTermRadiance(const Material& material, const Light& light, const LightView<S>& view,
+                           const S& cosine, const Vec3<S>& n, const Vec3<S>& v) {
+  RgbOf<S> reflectance = Scaled(material.diffuse, cosine);
+  if (!IsBlack(material.specular)) {
+    reflectance += Scaled(material.specular, Highlight(material.exponent, n, view.to_light, v));
+  }
+  return Scaled(light.irradiance, view.fall_off) * reflectance;
+}
+
+// Mirror direction of unit d about unit n.
+template <class S>
+Vec3<S> Reflected(const Vec3<S>& d, const Vec3<S>& n) {
+  return d - n * (S(2) * Dot(n, d));
+}
+
+// Snell's direction of unit d at unit normal n (n.d <= 0), from index ior_from into ior_into;
+// nothing under total internal reflection.
+template <class S>
+std::optional<Vec3<S>> Refracted(const Vec3<S>& d, const Vec3<S>& n, double ior_from,
+                                 double ior_into) {
+  using std::sqrt;
+  if (ior_from == ior_into) return d;
+  const S eta = S(ior_from) / S(ior_into);
+  const S cosine = -Dot(n, d);
+  const S squared = S(1) - eta * eta * (S(1) - cosine * cosine);
+  if (squared < 0) return std::nullopt;
+  return d * eta + n * (eta * cosine - sqrt(squared));
+}
+
+}  // namespace linetree
