@@ -1,8 +1,141 @@
+// The radiance cache of one scene: linetrees of all objects under one byte budget.
+//
+// Cells depend on where paths end, so there is one forest of linetrees for every PathLimits in use
+// (at most kMaxForests; the one that was used least recently makes room). The answer to a ray never
+// depends on what else the cache holds beyond the choice between interpolating and tracing.
+//
+// Thread safety: every method may be called from any thread. One shared lock guards forests, pools
+// and samples; judging and tracing run outside it.
 #pragma once
-#include <cstdint>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "core/cache/cache_options.h"
+#include "core/cache/sample_store.h"
+#include "core/tree/linetree.h"
+#include "core/tree/paper_judge.h"
+
 namespace linetree {
-struct CacheOptions {
-  uint64_t memory_bytes = uint64_t{256} << 20;
+
+inline constexpr size_t kMaxForests = 16;
+
+// A ray that hits an object, in the coordinates of its linetree.
+struct CellQuery {
+  int32_t object = 0;
+  int32_t pair = 0;
+  RayCoords coords{};
 };
-class RadianceCache {};
+
+struct CellRef {
+  int32_t object = 0;
+  int32_t pair = 0;
+  CellId cell;
+  bool operator==(const CellRef&) const = default;
+  auto operator<=>(const CellRef&) const = default;
+  template <class H>
+  friend H AbslHashValue(H h, const CellRef& r) {
+    return H::combine(std::move(h), r.object, r.pair, r.cell.depth, r.cell.index);
+  }
+};
+
+struct CellAnswer {
+  Lookup::Kind kind = Lookup::Kind::kGiveUp;
+  Verdict verdict = Verdict::kUntried;  // of the last tried cell on the way
+  Rgb radiance;                         // kAnswer
+  CellId cell;                          // kUnbuilt: the one to build
+};
+
+struct BuildStats {
+  RayCounts counts;
+  uint64_t cells_tried = 0;
+  uint64_t cells_accepted = 0;  // certified for some epsilon
+  uint64_t cells_evicted = 0;
+  uint64_t cells_dropped = 0;  // judged, but there was no room to keep them
+};
+
+// Runs body(i) for i in [0, count), in any order, on as many threads as the caller likes.
+using ParallelLoop = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
+
+class RadianceCache {
+ public:
+  // Keeps a reference to the tracer, which must outlive the cache.
+  RadianceCache(const Tracer& tracer, const CacheOptions& options);
+  ~RadianceCache();
+  RadianceCache(const RadianceCache&) = delete;
+  RadianceCache& operator=(const RadianceCache&) = delete;
+
+  const CacheOptions& options() const { return options_; }
+
+  // What requests with one PathLimits share. `now` orders uses: one tick per batch.
+  struct Session {
+    uint32_t forest = 0;
+    uint32_t now = 0;
+    PathLimits limits;
+  };
+  Session Open(const PathLimits& limits);
+
+  // The query of a ray with this hit, or none where no linetree can answer: the object's radiance
+  // is cheaper to compute than to look up, the hit is not the first on its line, or the line has no
+  // coordinates.
+  std::optional<CellQuery> QueryFor(const Hit& hit, const Ray& ray) const;
+
+  // Looks the queries up at epsilon. answers.size() == queries.size().
+  void Find(const Session& session, double epsilon, std::span<const CellQuery> queries,
+            std::span<CellAnswer> answers) const;
+
+  // Traces, judges and publishes cells, each of which must have been kUnbuilt; `cells` are
+  // distinct. What does not fit into the budget beside cells in use by this session is dropped.
+  BuildStats Build(const Session& session, std::span<const CellRef> cells,
+                   const ParallelLoop& loop);
+
+  // Exact bytes held; CountBytes recomputes them from scratch.
+  uint64_t ByteSize() const;
+  uint64_t CountBytes() const;
+  uint64_t CellCount() const;
+  // Tried cells by verdict, for every object of the scene.
+  std::vector<std::array<uint64_t, kVerdictCount>> CellVerdicts() const;
+  // Forgets everything.
+  void Clear();
+
+ private:
+  struct ObjectTrees;
+  struct Forest;
+  struct Work;
+
+  Forest* FindForest(uint32_t id) const;
+  // Bytes of forests and cells, without samples. Needs the lock.
+  uint64_t CellBytes() const;
+  std::vector<SampleKey> CollectMissing(const Session& session, std::vector<Work>& works,
+                                        std::span<const int> corners) const;
+  void TraceMissing(const Session& session, const std::vector<SampleKey>& keys,
+                    const ParallelLoop& loop, std::vector<Work>& works,
+                    std::span<const int> corners, BuildStats& stats);
+  void PublishWorks(const Session& session, const std::vector<Work>& works, BuildStats& stats);
+  // Frees cells not used by this session, least recently used leaves first, until `needed` more
+  // bytes fit. Returns how many it evicted.
+  uint64_t MakeRoom(uint64_t needed, uint32_t now);
+
+  const Tracer& tracer_;
+  const CacheOptions options_;
+  const uint64_t cell_budget_;  // what the samples' share leaves
+  PaperJudge judge_;
+  std::vector<ObjectChart> charts_;  // by object
+  std::vector<bool> caches_;         // by object: whether looking up can pay
+
+  mutable std::shared_mutex mutex_;
+  // Guarded by mutex_:
+  CellPools pools_;
+  SampleStore samples_;
+  std::vector<std::unique_ptr<Forest>> forests_;
+  uint32_t next_forest_ = 1;
+  uint32_t clock_ = 0;
+};
+
 }  // namespace linetree

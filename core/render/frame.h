@@ -22,8 +22,8 @@ struct FrameStats {
   uint64_t interpolated = 0;
   uint64_t traced = 0;
   uint64_t background = 0;
-  RayCounts base;  // to answer (eye rays included)
-  RayCounts ip;    // to build interpolants
+  RayCounts base;                                  // to answer (eye rays included)
+  RayCounts ip;                                    // to build interpolants
   std::array<uint64_t, kVerdictCount> verdicts{};  // pixels by verdict
   uint64_t cells_tried = 0;
   uint64_t cells_accepted = 0;
@@ -40,14 +40,14 @@ struct FrameStats {
 struct Frame {
   int width = 0;
   int height = 0;
-  std::vector<float> radiance;   // 3 * width * height, linear RGB
-  std::vector<int32_t> object;   // index of the object seen, -1 for the background
+  std::vector<float> radiance;  // 3 * width * height, linear RGB
+  std::vector<int32_t> object;  // index of the object seen, -1 for the background
   std::vector<Source> source;
   std::vector<Verdict> verdict;
-  std::vector<float> depth;      // distance from the eye; infinity for the background
+  std::vector<float> depth;  // distance from the eye; infinity for the background
   Camera camera;
   double max_relative_error = 0;
-  double white = 1;              // Scene::white: what a picture shows as white
+  double white = 1;  // Scene::white: what a picture shows as white
   SceneVersion scene_version;
   FrameStats stats;
 };

@@ -4,14 +4,13 @@
 // Thread safety: every method may be called from any thread at any time.
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/cache/radiance_cache.h"
+#include "core/render/answer_rays.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
 #include "core/render/worker_pool.h"
@@ -20,19 +19,6 @@
 
 namespace linetree {
 
-// Lets a caller take back a request: rendering stops within one tile's work.
-class CancelToken {
- public:
-  void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool IsCancelled() const { return cancelled_.load(std::memory_order_relaxed); }
-
- private:
-  std::atomic<bool> cancelled_{false};
-};
-
-// Called from the rendering thread with the share of the frame that is done, in [0, 1].
-using Progress = std::function<void(double)>;
-
 struct FrameRequest {
   Camera camera;
   int width = 512;
@@ -40,19 +26,12 @@ struct FrameRequest {
   RenderOptions options;
 };
 
-struct RayAnswer {
-  Rgb radiance;
-  Source source = Source::kBackground;
-  Verdict verdict = Verdict::kUntried;
-  int object = kNoObject;
-  double depth = 0;  // distance along the ray; infinity for the background
-};
-
 struct RayBatch {
   std::vector<RayAnswer> answers;
   FrameStats stats;
 };
 
+// Sums since the scene was loaded.
 struct HostTotals {
   uint64_t frames = 0;
   uint64_t ray_batches = 0;
@@ -61,7 +40,8 @@ struct HostTotals {
 
 class SceneHost {
  public:
-  SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options);
+  explicit SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options = {},
+                     const RenderLimits& limits = {});
 
   const Scene& scene() const { return *scene_; }
   const Tracer& tracer() const { return tracer_; }
@@ -72,11 +52,20 @@ class SceneHost {
                                     const CancelToken* cancel = nullptr,
                                     const Progress& progress = nullptr);
 
-  // Directions need not be unit length, but finite and non-zero.
+  // Directions need not be unit length, but finite and non-zero. Depths are distances, in the
+  // scene's units.
   absl::StatusOr<RayBatch> TraceRays(const std::vector<Ray>& rays, const RenderOptions& options,
                                      WorkerPool& pool, const CancelToken* cancel = nullptr);
 
   HostTotals totals() const;
+
+ private:
+  const std::shared_ptr<const Scene> scene_;
+  const RenderLimits limits_;
+  const Tracer tracer_;
+  RadianceCache cache_;
+  mutable std::mutex totals_mutex_;
+  HostTotals totals_;  // guarded by totals_mutex_
 };
 
 }  // namespace linetree

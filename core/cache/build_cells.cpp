@@ -1,0 +1,138 @@
+// Building cells: trace the extremal rays that are missing, judge, publish.
+#include <algorithm>
+#include <mutex>
+
+#include "core/cache/forest.h"
+#include "core/cache/radiance_cache.h"
+
+namespace linetree {
+namespace {
+
+// Corners are traced in stages, and a cell that two corners already refute is not traced further:
+// opposite corners first, because they differ most.
+constexpr std::array<int, 2> kFirstStage = {0, 15};
+constexpr std::array<int, 2> kSecondStage = {5, 10};
+constexpr std::array<int, 12> kThirdStage = {3, 12, 6, 9, 1, 2, 4, 8, 7, 11, 13, 14};
+
+// What a new cell may add: its block, its interpolant.
+constexpr uint64_t kCellBytes = sizeof(CellBlock) + sizeof(Interpolant);
+
+}  // namespace
+
+// One cell on its way.
+struct RadianceCache::Work {
+  CellRef ref;
+  Corners corners;
+  Judgement judgement;  // kUntried while the cell is not refuted
+
+  bool IsOpen() const { return judgement.verdict == Verdict::kUntried; }
+  SampleKey KeyOf(int corner, uint32_t forest) const {
+    return {GridKey(ref.cell.Corner(corner)), ref.object, ref.pair, forest};
+  }
+};
+
+// Fills the corners that the store has; returns the keys of the others, each once, in order.
+std::vector<SampleKey> RadianceCache::CollectMissing(const Session& session,
+                                                     std::vector<Work>& works,
+                                                     std::span<const int> corners) const {
+  std::vector<SampleKey> missing;
+  absl::flat_hash_map<SampleKey, bool> seen;
+  std::shared_lock lock(mutex_);
+  for (Work& work : works) {
+    if (!work.IsOpen()) continue;
+    for (const int corner : corners) {
+      const SampleKey key = work.KeyOf(corner, session.forest);
+      auto& sample = work.corners[static_cast<size_t>(corner)];
+      sample = samples_.Get(key);
+      if (!sample && seen.try_emplace(key, true).second) missing.push_back(key);
+    }
+  }
+  return missing;
+}
+
+void RadianceCache::TraceMissing(const Session& session, const std::vector<SampleKey>& keys,
+                                 const ParallelLoop& loop, std::vector<Work>& works,
+                                 std::span<const int> corners, BuildStats& stats) {
+  std::vector<SampleStore::Sample> samples(keys.size());
+  std::vector<RayCounts> counts(keys.size());
+  loop(keys.size(), [&](size_t i) {
+    const SampleKey& key = keys[i];
+    GridPoint p;
+    for (size_t k = 0; k < 4; ++k) p[k] = static_cast<uint16_t>(key.grid >> (16 * k));
+    samples[i] = std::make_shared<const CornerSample>(
+        TraceCorner(tracer_, key.object, charts_[static_cast<size_t>(key.object)], key.pair,
+                    CoordsOfGrid(p), session.limits, counts[i]));
+  });
+  absl::flat_hash_map<SampleKey, const SampleStore::Sample*> by_key;
+  by_key.reserve(keys.size());
+  for (size_t i = 0; i < keys.size(); ++i) {
+    by_key.emplace(keys[i], &samples[i]);
+    stats.counts += counts[i];
+  }
+  for (Work& work : works) {
+    if (!work.IsOpen()) continue;
+    for (const int corner : corners) {
+      auto& sample = work.corners[static_cast<size_t>(corner)];
+      if (!sample) sample = *by_key.at(work.KeyOf(corner, session.forest));
+    }
+  }
+  std::unique_lock lock(mutex_);
+  for (size_t i = 0; i < keys.size(); ++i) samples_.Put(keys[i], samples[i]);
+}
+
+BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef> cells,
+                                const ParallelLoop& loop) {
+  BuildStats stats;
+  std::vector<Work> works(cells.size());
+  for (size_t i = 0; i < cells.size(); ++i) works[i].ref = cells[i];
+  const std::array<std::span<const int>, 3> stages = {kFirstStage, kSecondStage, kThirdStage};
+  for (const auto& stage : stages) {
+    const auto missing = CollectMissing(session, works, stage);
+    TraceMissing(session, missing, loop, works, stage, stats);
+    for (Work& work : works) {
+      for (const int corner : stage) {
+        if (!work.IsOpen()) break;
+        const Verdict v =
+            judge_.Compare(*work.corners[0], *work.corners[static_cast<size_t>(corner)]);
+        if (v != Verdict::kCertified) work.judgement.verdict = v;
+      }
+    }
+  }
+  loop(works.size(), [&](size_t i) {
+    if (works[i].IsOpen()) works[i].judgement = judge_.Decide(works[i].corners);
+  });
+  PublishWorks(session, works, stats);
+  return stats;
+}
+
+void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>& works,
+                                 BuildStats& stats) {
+  std::unique_lock lock(mutex_);
+  samples_.EndRound();
+  stats.cells_tried += works.size();
+  for (const Work& work : works) {
+    if (work.judgement.verdict == Verdict::kCertified) ++stats.cells_accepted;
+  }
+  Forest* forest = FindForest(session.forest);
+  if (forest == nullptr) {  // sixteen other path limits took its place
+    stats.cells_dropped += works.size();
+    return;
+  }
+  for (size_t i = 0; i < works.size(); ++i) {
+    const Work& work = works[i];
+    const uint64_t needed = kCellBytes + forest->GrowthBytes();
+    if (CellBytes() + needed > cell_budget_) {
+      stats.cells_evicted += MakeRoom(needed, session.now);
+      if (CellBytes() + needed > cell_budget_) {
+        stats.cells_dropped += works.size() - i;
+        return;
+      }
+    }
+    auto& trees = forest->objects[work.ref.object];
+    if (!trees) trees = std::make_unique<ObjectTrees>(pools_);
+    trees->pair[static_cast<size_t>(work.ref.pair)].Publish(work.ref.cell, work.judgement,
+                                                            session.now);
+  }
+}
+
+}  // namespace linetree

@@ -1,0 +1,23 @@
+// What a cache may hold and when it builds: one plain struct, validated by whoever reads the flags.
+#pragma once
+
+#include <cstdint>
+
+#include "core/tree/cell.h"
+
+namespace linetree {
+
+struct CacheOptions {
+  // For cells, interpolants and corner samples together. 0 turns the cache off.
+  uint64_t memory_bytes = uint64_t{256} << 20;
+  // Deepest cells, in [0, kMaxCellDepth]: edge 2^-max_cell_depth of an object's face.
+  int max_cell_depth = 8;
+  // A cell is built only for at least this many rays of one batch. A cell costs up to sixteen
+  // corner samples, of which neighbours share most.
+  uint32_t min_cell_rays = 16;
+};
+
+// Corner samples only make building cheaper, so they get at most this share of the memory.
+inline constexpr double kSampleShare = 0.25;
+
+}  // namespace linetree

@@ -1,0 +1,246 @@
+#include "core/render/answer_rays.h"
+
+#include <algorithm>
+
+#include "absl/container/flat_hash_map.h"
+#include "core/math/check.h"
+
+namespace linetree {
+namespace {
+
+// Rays that one iteration of a parallel loop handles: enough to hide the loop's cost, few enough to
+// stop soon when a request is cancelled.
+constexpr size_t kChunkRays = 1024;
+
+class Batch {
+ public:
+  Batch(const Tracer& tracer, RadianceCache& cache, const RenderOptions& options,
+        std::span<const Ray> rays, WorkerPool& pool, const CancelToken* cancel,
+        std::span<RayAnswer> answers, FrameStats& stats)
+      : tracer_(tracer),
+        cache_(cache),
+        options_(options),
+        rays_(rays),
+        pool_(pool),
+        cancel_(cancel),
+        answers_(answers),
+        stats_(stats),
+        hits_(rays.size()) {}
+
+  void FindHits();
+  void AnswerFromCache();
+  void TraceRest();
+  bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
+
+ private:
+  // A ray that may still be answered by a cell.
+  struct Pending {
+    uint32_t ray = 0;
+    CellQuery query;
+  };
+
+  template <class F>
+  void ForChunks(size_t count, RayCounts* counts, F body);
+  void CollectPending();
+  // Looks the pending rays up; keeps those whose cell is unbuilt, with the cells in `unbuilt`.
+  void LookUp(const RadianceCache::Session& session, std::vector<CellId>& unbuilt);
+  // Of the unbuilt cells, those that enough rays ask for. Drops the rays of the others.
+  std::vector<CellRef> ChooseCells(const std::vector<CellId>& unbuilt);
+
+  const Tracer& tracer_;
+  RadianceCache& cache_;
+  const RenderOptions& options_;
+  std::span<const Ray> rays_;
+  WorkerPool& pool_;
+  const CancelToken* cancel_;
+  std::span<RayAnswer> answers_;
+  FrameStats& stats_;
+  std::vector<Hit> hits_;
+  std::vector<Pending> pending_;
+};
+
+// body(begin, end, counts) over [0, count) in chunks; sums the chunks' counts in order.
+template <class F>
+void Batch::ForChunks(size_t count, RayCounts* counts, F body) {
+  const size_t chunks = (count + kChunkRays - 1) / kChunkRays;
+  std::vector<RayCounts> chunk_counts(chunks);
+  pool_.ParallelFor(
+      chunks,
+      [&](size_t chunk) {
+        if (IsCancelled()) return;
+        const size_t begin = chunk * kChunkRays;
+        body(begin, std::min(count, begin + kChunkRays), chunk_counts[chunk]);
+      },
+      &stats_.cpu_ms);
+  for (const RayCounts& c : chunk_counts) *counts += c;
+}
+
+void Batch::FindHits() {
+  ForChunks(rays_.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
+    for (size_t i = begin; i < end; ++i) {
+      hits_[i] = tracer_.Intersect(rays_[i].origin, rays_[i].direction, RayStart{});
+      ++counts.eye;
+      ++counts.intersect;
+      RayAnswer& answer = answers_[i];
+      answer = {};
+      if (!hits_[i].IsHit()) {
+        answer.radiance = tracer_.scene().background;
+        continue;
+      }
+      answer.source = Source::kTraced;
+      answer.object = hits_[i].object;
+      answer.depth = hits_[i].t;
+    }
+  });
+}
+
+void Batch::CollectPending() {
+  for (size_t i = 0; i < rays_.size(); ++i) {
+    if (!hits_[i].IsHit()) continue;
+    if (const auto query = cache_.QueryFor(hits_[i], rays_[i])) {
+      pending_.push_back({static_cast<uint32_t>(i), *query});
+    }
+  }
+}
+
+void Batch::LookUp(const RadianceCache::Session& session, std::vector<CellId>& unbuilt) {
+  std::vector<CellId> cells(pending_.size());
+  std::vector<char> is_unbuilt(pending_.size());
+  RayCounts none;
+  ForChunks(pending_.size(), &none, [&](size_t begin, size_t end, RayCounts&) {
+    std::array<CellQuery, kChunkRays> queries;
+    std::array<CellAnswer, kChunkRays> found;
+    const size_t count = end - begin;
+    for (size_t i = 0; i < count; ++i) queries[i] = pending_[begin + i].query;
+    cache_.Find(session, options_.max_relative_error, std::span(queries).first(count),
+                std::span(found).first(count));
+    for (size_t i = 0; i < count; ++i) {
+      RayAnswer& answer = answers_[pending_[begin + i].ray];
+      answer.verdict = found[i].verdict;
+      if (found[i].kind == Lookup::Kind::kAnswer) {
+        answer.radiance = found[i].radiance;
+        answer.source = Source::kInterpolated;
+      }
+      is_unbuilt[begin + i] = found[i].kind == Lookup::Kind::kUnbuilt;
+      cells[begin + i] = found[i].cell;
+    }
+  });
+  unbuilt.clear();
+  size_t kept = 0;
+  for (size_t i = 0; i < pending_.size(); ++i) {
+    if (!is_unbuilt[i]) continue;
+    pending_[kept++] = pending_[i];
+    unbuilt.push_back(cells[i]);
+  }
+  pending_.resize(kept);
+}
+
+std::vector<CellRef> Batch::ChooseCells(const std::vector<CellId>& unbuilt) {
+  absl::flat_hash_map<CellRef, uint32_t> rays_of;
+  const auto ref_of = [&](size_t i) {
+    return CellRef{pending_[i].query.object, pending_[i].query.pair, unbuilt[i]};
+  };
+  for (size_t i = 0; i < pending_.size(); ++i) ++rays_of[ref_of(i)];
+  const uint32_t least = cache_.options().min_cell_rays;
+  size_t kept = 0;
+  for (size_t i = 0; i < pending_.size(); ++i) {
+    if (rays_of[ref_of(i)] >= least) pending_[kept++] = pending_[i];
+  }
+  pending_.resize(kept);
+  std::vector<CellRef> cells;
+  for (const auto& [ref, rays] : rays_of) {
+    if (rays >= least) cells.push_back(ref);
+  }
+  std::sort(cells.begin(), cells.end());  // the table's order differs from run to run
+  return cells;
+}
+
+void Batch::AnswerFromCache() {
+  CollectPending();
+  if (pending_.empty()) return;
+  const RadianceCache::Session session = cache_.Open(options_.limits);
+  const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
+    pool_.ParallelFor(count, body, &stats_.cpu_ms);
+  };
+  std::vector<CellId> unbuilt;
+  LookUp(session, unbuilt);
+  // Each round goes one level deeper, unless another client's needs took cells away meanwhile.
+  const int most_rounds = 2 * (cache_.options().max_cell_depth + 1);
+  for (int round = 0; round < most_rounds && !pending_.empty() && !IsCancelled(); ++round) {
+    const std::vector<CellRef> cells = ChooseCells(unbuilt);
+    if (cells.empty()) return;
+    const BuildStats built = cache_.Build(session, cells, loop);
+    stats_.ip += built.counts;
+    stats_.cells_tried += built.cells_tried;
+    stats_.cells_accepted += built.cells_accepted;
+    stats_.cells_evicted += built.cells_evicted;
+    LookUp(session, unbuilt);
+    if (built.cells_dropped > 0) return;  // the budget is full of cells in use
+  }
+}
+
+void Batch::TraceRest() {
+  std::vector<uint32_t> rest;
+  for (size_t i = 0; i < answers_.size(); ++i) {
+    if (answers_[i].source == Source::kTraced) rest.push_back(static_cast<uint32_t>(i));
+  }
+  ForChunks(rest.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
+    for (size_t k = begin; k < end; ++k) {
+      const uint32_t i = rest[k];
+      answers_[i].radiance = tracer_.RadianceFromHit(hits_[i], rays_[i].origin, rays_[i].direction,
+                                                     options_.limits, counts);
+    }
+  });
+}
+
+void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
+  stats.pixels += answers.size();
+  for (const RayAnswer& answer : answers) {
+    ++stats.verdicts[static_cast<size_t>(answer.verdict)];
+    switch (answer.source) {
+      case Source::kBackground:
+        ++stats.background;
+        break;
+      case Source::kInterpolated:
+        ++stats.interpolated;
+        break;
+      case Source::kTraced:
+        ++stats.traced;
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, const RenderOptions& options,
+                        std::span<const Ray> rays, WorkerPool& pool, const CancelToken* cancel,
+                        const Progress& progress, std::span<RayAnswer> answers, FrameStats& stats) {
+  LT_CHECK(rays.size() == answers.size());
+  // A batch of this size bounds the memory for hits and queries (40 MiB) whatever a request asks
+  // for.
+  constexpr size_t kBatchRays = size_t{1} << 18;
+  const bool cached =
+      options.mode == Mode::kCached && options.max_relative_error >= kMinInterpolationError;
+  for (size_t begin = 0; begin < rays.size(); begin += kBatchRays) {
+    const size_t count = std::min(kBatchRays, rays.size() - begin);
+    const auto part = answers.subspan(begin, count);
+    Batch batch(tracer, cache, options, rays.subspan(begin, count), pool, cancel, part, stats);
+    const auto report = [&](double share) {
+      const double done = static_cast<double>(begin) + share * static_cast<double>(count);
+      if (progress) progress(done / static_cast<double>(rays.size()));
+    };
+    batch.FindHits();
+    report(0.2);
+    if (cached && !batch.IsCancelled()) batch.AnswerFromCache();
+    report(0.5);
+    if (!batch.IsCancelled()) batch.TraceRest();
+    if (batch.IsCancelled()) return absl::CancelledError("the request was cancelled");
+    CountAnswers(part, stats);
+    report(1);
+  }
+  stats.cache_bytes = cache.ByteSize();
+  return absl::OkStatus();
+}
+
+}  // namespace linetree

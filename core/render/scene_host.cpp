@@ -1,0 +1,156 @@
+#include "core/render/scene_host.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace linetree {
+namespace {
+
+class Stopwatch {
+ public:
+  double Ms() const {
+    const auto elapsed = std::chrono::steady_clock::now() - begin_;
+    return std::chrono::duration<double, std::milli>(elapsed).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// Rows of a band together hold about as many rays as one batch of AnswerRays, so rays and answers
+// of a whole large picture never exist at once.
+int RowsPerBand(int width) { return std::max(1, (1 << 18) / width); }
+
+void StoreAnswers(std::span<const RayAnswer> answers, size_t first, Frame& frame) {
+  for (size_t i = 0; i < answers.size(); ++i) {
+    const RayAnswer& answer = answers[i];
+    const size_t p = first + i;
+    for (int c = 0; c < 3; ++c) {
+      frame.radiance[3 * p + static_cast<size_t>(c)] = static_cast<float>(answer.radiance[c]);
+    }
+    frame.object[p] = answer.object;
+    frame.source[p] = answer.source;
+    frame.verdict[p] = answer.verdict;
+    frame.depth[p] = static_cast<float>(answer.depth);
+  }
+}
+
+Frame EmptyFrame(const Scene& scene, const FrameRequest& request) {
+  Frame frame;
+  frame.width = request.width;
+  frame.height = request.height;
+  const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+  frame.radiance.resize(3 * pixels);
+  frame.object.resize(pixels);
+  frame.source.resize(pixels);
+  frame.verdict.resize(pixels);
+  frame.depth.resize(pixels);
+  frame.camera = request.camera;
+  frame.max_relative_error = request.options.max_relative_error;
+  frame.white = scene.white;
+  frame.scene_version = scene.version;
+  return frame;
+}
+
+// The same ray with a direction of unit length, or the field that is wrong.
+absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
+  if (!IsFinite(ray.origin)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("rays[", index, "].origin: expected finite coordinates"));
+  }
+  // Scaled first: the square of a long vector would overflow, that of a short one vanish.
+  const Vec3d& d = ray.direction;
+  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  if (!IsFinite(d) || !(largest > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("rays[", index, "].direction: expected a finite vector other than zero"));
+  }
+  const Vec3d scaled{d.x / largest, d.y / largest, d.z / largest};
+  return Ray{ray.origin, Normalized(scaled)};
+}
+
+}  // namespace
+
+SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options,
+                     const RenderLimits& limits)
+    : scene_(std::move(scene)), limits_(limits), tracer_(*scene_), cache_(tracer_, cache_options) {}
+
+absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
+                                             const CancelToken* cancel, const Progress& progress) {
+  if (auto s = ValidateCamera(request.camera); !s.ok()) return s;
+  if (auto s = ValidateSize(request.width, request.height, limits_); !s.ok()) return s;
+  if (auto s = ValidateOptions(request.options); !s.ok()) return s;
+  const Stopwatch stopwatch;
+  Frame frame = EmptyFrame(*scene_, request);
+  const EyeRays eye_rays(request.camera, request.width, request.height);
+  const int band = RowsPerBand(request.width);
+  for (int top = 0; top < request.height; top += band) {
+    const int rows = std::min(band, request.height - top);
+    const auto width = static_cast<size_t>(request.width);
+    std::vector<Ray> rays(static_cast<size_t>(rows) * width);
+    pool.ParallelFor(
+        static_cast<size_t>(rows),
+        [&](size_t row) {
+          for (size_t x = 0; x < width; ++x) {
+            rays[row * width + x] =
+                eye_rays.ThroughPixel(static_cast<int>(x), top + static_cast<int>(row));
+          }
+        },
+        &frame.stats.cpu_ms);
+    std::vector<RayAnswer> answers(rays.size());
+    const auto band_progress = [&](double share) {
+      if (progress) progress((top + share * rows) / request.height);
+    };
+    if (auto s = AnswerRays(tracer_, cache_, request.options, rays, pool, cancel, band_progress,
+                            answers, frame.stats);
+        !s.ok()) {
+      return s;
+    }
+    StoreAnswers(answers, static_cast<size_t>(top) * width, frame);
+  }
+  frame.stats.wall_ms = stopwatch.Ms();
+  std::lock_guard lock(totals_mutex_);
+  ++totals_.frames;
+  totals_.stats += frame.stats;
+  return frame;
+}
+
+absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
+                                              const RenderOptions& options, WorkerPool& pool,
+                                              const CancelToken* cancel) {
+  if (auto s = ValidateOptions(options); !s.ok()) return s;
+  if (rays.size() > limits_.max_rays) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("rays: at most ", limits_.max_rays, " are allowed, got ", rays.size()));
+  }
+  const Stopwatch stopwatch;
+  std::vector<Ray> unit_rays;
+  unit_rays.reserve(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const auto ray = UnitRay(rays[i], i);
+    if (!ray.ok()) return ray.status();
+    unit_rays.push_back(*ray);
+  }
+  RayBatch batch;
+  batch.answers.resize(rays.size());
+  if (auto s = AnswerRays(tracer_, cache_, options, unit_rays, pool, cancel, nullptr, batch.answers,
+                          batch.stats);
+      !s.ok()) {
+    return s;
+  }
+  batch.stats.wall_ms = stopwatch.Ms();
+  std::lock_guard lock(totals_mutex_);
+  ++totals_.ray_batches;
+  totals_.stats += batch.stats;
+  return batch;
+}
+
+HostTotals SceneHost::totals() const {
+  std::lock_guard lock(totals_mutex_);
+  return totals_;
+}
+
+}  // namespace linetree

@@ -1,0 +1,160 @@
+#include "core/tree/linetree.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/math/check.h"
+
+namespace linetree {
+namespace {
+
+uint32_t LoadState(CellNode& node) {
+  return std::atomic_ref<uint32_t>(node.state).load(std::memory_order_relaxed);
+}
+Verdict VerdictOf(uint32_t state) { return static_cast<Verdict>(state & 15); }
+bool IsTried(const CellNode& node) { return VerdictOf(node.state) != Verdict::kUntried; }
+uint32_t StateOf(Verdict verdict, uint32_t now) {
+  return static_cast<uint32_t>(verdict) | (now & kStampMask) << 4;
+}
+
+// The verdict shares the word and does not change while readers are about.
+void Touch(CellNode& node, uint32_t state, uint32_t now) {
+  const uint32_t fresh = StateOf(VerdictOf(state), now);
+  if (fresh == state) return;
+  std::atomic_ref<uint32_t>(node.state).store(fresh, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+Lookup Linetree::Find(const RayCoords& coords, double epsilon, int max_depth, uint32_t now) const {
+  Lookup found;
+  const CellId deepest = CellAt(coords, max_depth);
+  CellNode* node = &root_;
+  for (int depth = 0;; ++depth) {
+    const uint32_t state = LoadState(*node);
+    const Verdict verdict = VerdictOf(state);
+    if (verdict == Verdict::kUntried) {
+      found.kind = Lookup::Kind::kUnbuilt;
+      found.cell = CellAt(coords, depth);
+      return found;
+    }
+    const bool meets = static_cast<double>(node->spread) <= epsilon;
+    found.verdict = verdict == Verdict::kCertified && !meets ? Verdict::kEpsilon : verdict;
+    if (found.verdict == Verdict::kCertified) {
+      found.kind = Lookup::Kind::kAnswer;
+      found.cell = CellAt(coords, depth);
+      found.interpolant = &pools_->interpolants[node->interpolant];
+      Touch(*node, state, now);
+      return found;
+    }
+    if (depth == max_depth || node->children == 0) Touch(*node, state, now);
+    if (depth == max_depth) return found;
+    if (node->children == 0) {
+      found.kind = Lookup::Kind::kUnbuilt;
+      found.cell = CellAt(coords, depth + 1);
+      return found;
+    }
+    node = &pools_->blocks[node->children].child[static_cast<size_t>(deepest.ChildAt(depth))];
+  }
+}
+
+bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t now) {
+  LT_CHECK(judgement.verdict != Verdict::kUntried);
+  CellHandle at;
+  for (int depth = 0; depth < cell.depth; ++depth) {
+    CellNode& parent = At(at);
+    if (!IsTried(parent)) return false;
+    if (parent.children == 0) {
+      parent.children = pools_->blocks.Allocate();
+      CellBlock& block = pools_->blocks[parent.children];
+      block.parent_block = at.block;
+      block.parent_child = at.child;
+    }
+    at = {parent.children, static_cast<uint32_t>(cell.ChildAt(depth))};
+  }
+  CellNode& node = At(at);
+  if (IsTried(node)) return false;
+  node.state = StateOf(judgement.verdict, now);
+  if (judgement.verdict == Verdict::kCertified) {
+    node.spread = std::nextafter(static_cast<float>(judgement.spread),
+                                 std::numeric_limits<float>::infinity());
+    node.interpolant = pools_->interpolants.Allocate();
+    pools_->interpolants[node.interpolant] = judgement.interpolant;
+  }
+  ++cell_count_;
+  ++verdicts_[static_cast<size_t>(judgement.verdict)];
+  return true;
+}
+
+bool Linetree::HasTriedChild(const CellNode& node) const {
+  if (node.children == 0) return false;
+  const auto& children = pools_->blocks[node.children].child;
+  return std::any_of(children.begin(), children.end(), IsTried);
+}
+
+void Linetree::ForEachBlock(const std::function<void(uint32_t block)>& visit) const {
+  std::vector<uint32_t> order;
+  if (root_.children != 0) order.push_back(root_.children);
+  for (size_t i = 0; i < order.size(); ++i) {
+    for (const CellNode& node : pools_->blocks[order[i]].child) {
+      if (node.children != 0) order.push_back(node.children);
+    }
+  }
+  std::for_each(order.rbegin(), order.rend(), visit);
+}
+
+void Linetree::ForEachLeaf(const std::function<void(CellHandle, uint32_t)>& visit) const {
+  const auto visit_if_leaf = [&](CellHandle handle) {
+    const CellNode& node = At(handle);
+    if (IsTried(node) && !HasTriedChild(node)) visit(handle, node.state >> 4);
+  };
+  visit_if_leaf({});
+  ForEachBlock([&](uint32_t block) {
+    for (uint32_t i = 0; i < kCellChildren; ++i) visit_if_leaf({block, i});
+  });
+}
+
+void Linetree::EvictLeaf(CellHandle leaf) {
+  CellNode& node = At(leaf);
+  LT_CHECK(IsTried(node) && node.children == 0);
+  --cell_count_;
+  --verdicts_[static_cast<size_t>(VerdictOf(node.state))];
+  if (node.interpolant != 0) pools_->interpolants.Free(node.interpolant);
+  node = CellNode{};
+  if (leaf.block == 0) return;
+  const CellBlock& block = pools_->blocks[leaf.block];
+  CellNode& parent = At({block.parent_block, block.parent_child});
+  if (HasTriedChild(parent)) return;
+  pools_->blocks.Free(parent.children);
+  parent.children = 0;
+}
+
+void Linetree::Clear() {
+  const auto release = [&](CellNode& node) {
+    if (node.interpolant != 0) pools_->interpolants.Free(node.interpolant);
+    node = CellNode{};
+  };
+  ForEachBlock([&](uint32_t block) {
+    for (CellNode& node : pools_->blocks[block].child) release(node);
+    pools_->blocks.Free(block);
+  });
+  release(root_);
+  cell_count_ = 0;
+  verdicts_ = {};
+}
+
+uint64_t Linetree::CountBytes() const {
+  uint64_t bytes = root_.interpolant != 0 ? sizeof(Interpolant) : 0;
+  ForEachBlock([&](uint32_t block) {
+    bytes += sizeof(CellBlock);
+    for (const CellNode& node : pools_->blocks[block].child) {
+      if (node.interpolant != 0) bytes += sizeof(Interpolant);
+    }
+  });
+  return bytes;
+}
+
+}  // namespace linetree
