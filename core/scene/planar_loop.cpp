@@ -17,6 +17,14 @@ double Extent(const std::vector<Vec3d>& vertices) {
   return Length(box.Extent());
 }
 
+double Magnitude(const std::vector<Vec3d>& vertices) {
+  double magnitude = 0;
+  for (const Vec3d& v : vertices) {
+    magnitude = std::max({magnitude, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  }
+  return magnitude;
+}
+
 // Distance of b from the line through a and c, or from a when they coincide.
 double DistanceFromLine(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d line = c - a;
@@ -91,17 +99,19 @@ Vec3d AreaVector(const std::vector<Vec3d>& vertices) {
   return sum;
 }
 
+double LoopTolerance(const std::vector<Vec3d>& vertices) {
+  return std::max(kLoopTolerance * Extent(vertices), kMagnitudeTolerance * Magnitude(vertices));
+}
+
 absl::StatusOr<PlanarLoop> MakePlanarLoop(const std::vector<Vec3d>& vertices) {
   if (auto s = CheckVertices(vertices); !s.ok()) return s;
-  double magnitude = 0;
-  for (const Vec3d& v : vertices) {
-    magnitude = std::max({magnitude, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  }
+  const double magnitude = Magnitude(vertices);
   const double extent = Extent(vertices);
+  const double tolerance = LoopTolerance(vertices);
   if (!(extent >= 1 / kMaxMagnitude)) return Degenerate();
 
   const Vec3d area = AreaVector(vertices);
-  if (!(Length(area) > kLoopTolerance * extent * extent)) return Degenerate();
+  if (!(Length(area) > tolerance * extent)) return Degenerate();
   PlanarLoop loop;
   loop.normal = Unit(area);
   loop.vertices = vertices;
@@ -114,7 +124,7 @@ absl::StatusOr<PlanarLoop> MakePlanarLoop(const std::vector<Vec3d>& vertices) {
     }
     loop.vertices[i] = vertices[i] - loop.normal * off;
   }
-  loop.vertices = WithoutIdle(std::move(loop.vertices), kLoopTolerance * extent);
+  loop.vertices = WithoutIdle(std::move(loop.vertices), tolerance);
   if (loop.vertices.size() < 3) return Degenerate();
   loop.convex = IsConvex(loop.vertices, loop.normal);
   return loop;

@@ -13,10 +13,13 @@ namespace linetree {
 // files with six significant digits (NFF) are off by 5e-6 per coordinate, and so is the plane.
 inline constexpr double kPlanarityTolerance = 2e-5;
 
-// Vertices that are closer to each other, or to the line through their neighbours, than this
-// fraction of the loop's extent are one vertex, or none: a few hundred roundings of double
-// arithmetic. A loop that is thinner than this is degenerate.
+// Vertices that are closer to each other, or to the line through their neighbours, than
+// LoopTolerance are one vertex, or none; a loop that is thinner is degenerate. It is a thousand
+// roundings of double arithmetic on the loop's extent and sixteen on the magnitude of its
+// coordinates: signs of areas that clear it are certain.
 inline constexpr double kLoopTolerance = 0x1p-42;
+inline constexpr double kMagnitudeTolerance = 0x1p-48;
+double LoopTolerance(const std::vector<Vec3d>& vertices);
 
 struct PlanarLoop {
   std::vector<Vec3d> vertices;  // moved into the plane; no repeated or collinear neighbours
