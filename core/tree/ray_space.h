@@ -37,9 +37,9 @@ namespace linetree {
 
 inline constexpr int kFacePairs = 6;
 
-// See "Accuracy" above: 64 roundings of 2^-53, about twice what the longest chain of operations
-// between a ray and its reconstruction has.
-inline constexpr double kLineRounding = 0x1p-47;
+// See "Accuracy" above: eight roundings of 2^-53, one for every operation in the longest chain
+// between a ray and its reconstruction (to the chart, to the plane, scaled, and back).
+inline constexpr double kLineRounding = 0x1p-50;
 
 class ObjectChart {
  public:

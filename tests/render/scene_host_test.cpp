@@ -1,0 +1,122 @@
+#include "core/render/scene_host.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/demo_scenes.h"
+
+namespace linetree {
+namespace {
+
+using testing::HasSubstr;
+
+class SceneHostTest : public testing::Test {
+ protected:
+  SceneHostTest() : host_(test::BallsOnFloor(3, 70)), pool_(2) {
+    request_.camera = host_.scene().cameras[0];
+    request_.width = 40;
+    request_.height = 30;
+  }
+  std::string ErrorOf(const FrameRequest& request) {
+    return std::string(host_.RenderFrame(request, pool_).status().message());
+  }
+
+  SceneHost host_;
+  WorkerPool pool_;
+  FrameRequest request_;
+};
+
+TEST_F(SceneHostTest, RefusesBadRequestsByField) {
+  FrameRequest bad = request_;
+  bad.camera.eye.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(ErrorOf(bad), HasSubstr("camera.eye"));
+  bad = request_;
+  bad.width = 0;
+  EXPECT_THAT(ErrorOf(bad), HasSubstr("width"));
+  bad = request_;
+  bad.options.max_relative_error = 2;
+  EXPECT_THAT(ErrorOf(bad), HasSubstr("max_relative_error"));
+  EXPECT_EQ(host_.totals().frames, 0u);
+}
+
+TEST_F(SceneHostTest, RaysAndFramesAgree) {
+  request_.options.max_relative_error = 0;
+  const auto frame = host_.RenderFrame(request_, pool_);
+  ASSERT_TRUE(frame.ok());
+  const EyeRays eye(request_.camera, request_.width, request_.height);
+  std::vector<Ray> rays;
+  for (int y = 0; y < request_.height; ++y) {
+    for (int x = 0; x < request_.width; ++x) {
+      rays.push_back(eye.ThroughPixel(x, y));
+      rays.back().direction = rays.back().direction * 1.0;
+    }
+  }
+  const auto batch = host_.TraceRays(rays, request_.options, pool_);
+  ASSERT_TRUE(batch.ok());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(batch->answers[i].object, frame->object[i]);
+    ASSERT_NEAR(batch->answers[i].radiance.g, static_cast<double>(frame->radiance[3 * i + 1]),
+                1e-6);
+  }
+  EXPECT_EQ(host_.totals().frames, 1u);
+  EXPECT_EQ(host_.totals().ray_batches, 1u);
+  EXPECT_EQ(host_.totals().stats.pixels, 2 * rays.size());
+}
+
+TEST_F(SceneHostTest, DirectionsOfAnyLengthAreTaken) {
+  const Vec3d from{0, -9, 4}, to{0, 0, 0.1};
+  for (const double scale : {1e-300, 1e-5, 1.0, 1e300}) {
+    const auto batch = host_.TraceRays({{from, (to - from) * scale}}, {}, pool_);
+    ASSERT_TRUE(batch.ok()) << batch.status();
+    EXPECT_NE(batch->answers[0].object, kNoObject);
+    EXPECT_NEAR(batch->answers[0].depth, 9.6, 2);
+  }
+}
+
+TEST_F(SceneHostTest, RefusesBadRaysByIndex) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const Ray good{{0, 0, 5}, {0, 0, -1}};
+  for (const Ray& bad : {Ray{{0, inf, 0}, {0, 0, 1}}, Ray{{0, 0, 0}, {0, 0, 0}},
+                         Ray{{0, 0, 0}, {std::nan(""), 0, 1}}}) {
+    const auto status = host_.TraceRays({good, bad}, {}, pool_).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(status.message()), HasSubstr("rays[1]."));
+  }
+  const std::vector<Ray> many((size_t{1} << 20) + 1, good);
+  EXPECT_EQ(host_.TraceRays(many, {}, pool_).status().code(), absl::StatusCode::kResourceExhausted);
+}
+
+TEST_F(SceneHostTest, CancelledRequestsStopAndKeepTheHostAlive) {
+  CancelToken cancel;
+  cancel.Cancel();
+  EXPECT_EQ(host_.RenderFrame(request_, pool_, &cancel).status().code(),
+            absl::StatusCode::kCancelled);
+  EXPECT_TRUE(host_.RenderFrame(request_, pool_).ok());
+}
+
+TEST_F(SceneHostTest, ProgressRunsFromZeroToOne) {
+  double last = 0;
+  ASSERT_TRUE(host_
+                  .RenderFrame(request_, pool_, nullptr,
+                               [&](double share) {
+                                 EXPECT_GE(share, last);
+                                 last = share;
+                               })
+                  .ok());
+  EXPECT_EQ(last, 1);
+}
+
+TEST_F(SceneHostTest, AnEmptySceneIsAllBackground) {
+  auto scene = std::make_shared<Scene>();
+  scene->background = {0.25, 0.5, 0.75};
+  SceneHost host(scene);
+  const auto frame = host.RenderFrame(request_, pool_);
+  ASSERT_TRUE(frame.ok());
+  EXPECT_EQ(frame->stats.background, frame->stats.pixels);
+  EXPECT_EQ(frame->radiance[1], 0.5f);
+}
+
+}  // namespace
+}  // namespace linetree
