@@ -1,5 +1,6 @@
 // The typed client: every call has a deadline, refusals come back as absl::Status with the server's
-// words, UNAVAILABLE is retried (calls change nothing that a second try would change again).
+// words. UNAVAILABLE and "no room now" are retried as long as nothing of the answer has come (calls
+// change nothing that a second try would change again).
 //
 // Thread safety: all methods may be called from any thread.
 #pragma once
@@ -18,8 +19,9 @@ namespace linetree {
 
 struct ClientOptions {
   std::chrono::milliseconds connect_timeout_ms{5000};
+  // Of one call; of one frame for Fly.
   std::chrono::milliseconds call_timeout_ms{600'000};
-  int max_attempts = 3;
+  int max_attempts = 3;  // in [1, 5]
 };
 
 class Client {
@@ -45,8 +47,7 @@ class Client {
                            bool all_layers,
                            const std::function<void(size_t index, Frame frame)>& on_frame) = 0;
 
-  virtual absl::StatusOr<RayBatch> TraceRays(const std::string& scene,
-                                             const std::vector<Ray>& rays,
+  virtual absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                              const RenderOptions& options) = 0;
   // Empty scene name: all scenes.
   virtual absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) = 0;

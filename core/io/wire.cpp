@@ -1,7 +1,6 @@
 #include "core/io/wire.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "absl/strings/ascii.h"
@@ -28,19 +27,6 @@ absl::Status CheckEnum(bool valid, absl::string_view path, absl::string_view fie
   if (valid) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat(path, field, ": expected one of the values in service.proto, got ", value));
-}
-
-absl::Status CheckRay(const v1::Ray& ray, int index) {
-  if (!IsFinite(FromWire(ray.origin()))) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("rays[", index, "].origin: expected finite coordinates"));
-  }
-  const double length = Length(FromWire(ray.direction()));
-  if (!(length > 0) || !std::isfinite(length)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("rays[", index, "].direction: expected a vector of finite, non-zero length"));
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace
@@ -95,9 +81,9 @@ v1::RenderOptions RenderOptionsToWire(const RenderOptions& options) {
 absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& message,
                                                     const RenderOptions& defaults,
                                                     absl::string_view path) {
-  auto status = CheckEnum(v1::Mode_IsValid(message.mode()), path, "mode", message.mode());
+  auto status = CheckEnum(v1::Mode_IsValid(message.mode()), path, "options.mode", message.mode());
   if (!status.ok()) return status;
-  status = CheckEnum(v1::Judge_IsValid(message.judge()), path, "judge", message.judge());
+  status = CheckEnum(v1::Judge_IsValid(message.judge()), path, "options.judge", message.judge());
   if (!status.ok()) return status;
 
   RenderOptions options = defaults;
@@ -154,7 +140,7 @@ absl::StatusOr<FrameRequest> FrameRequestFromWire(const v1::RenderFrameRequest& 
     }
     request.camera = *camera;
   }
-  auto options = RenderOptionsFromWire(message.options(), defaults, absl::StrCat(path, "options."));
+  auto options = RenderOptionsFromWire(message.options(), defaults, path);
   if (!options.ok()) return options.status();
   request.options = *options;
   return request;
@@ -174,17 +160,10 @@ v1::TraceRaysRequest RaysToWire(const std::string& scene, const std::vector<Ray>
   return message;
 }
 
-absl::StatusOr<std::vector<Ray>> RaysFromWire(const v1::TraceRaysRequest& message,
-                                              const RenderLimits& limits) {
-  if (static_cast<uint64_t>(message.rays_size()) > limits.max_rays) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("rays: expected at most ", limits.max_rays, ", got ", message.rays_size()));
-  }
+std::vector<Ray> RaysFromWire(const v1::TraceRaysRequest& message) {
   std::vector<Ray> rays;
   rays.reserve(static_cast<size_t>(message.rays_size()));
-  for (int i = 0; i < message.rays_size(); ++i) {
-    const v1::Ray& ray = message.rays(i);
-    if (auto status = CheckRay(ray, i); !status.ok()) return status;
+  for (const v1::Ray& ray : message.rays()) {
     rays.push_back({FromWire(ray.origin()), FromWire(ray.direction())});
   }
   return rays;

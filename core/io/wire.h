@@ -1,8 +1,8 @@
 // Between the messages of service.proto and core types, both ways.
 //
-// Everything that comes from the wire is checked here: an error is INVALID_ARGUMENT, NOT_FOUND or
-// RESOURCE_EXHAUSTED and starts with the path of the field at fault, then says what was expected.
-// `path` arguments are prefixes of such paths: "" or, say, "frame.".
+// Everything that comes from the wire is checked here or by what core offers for it; an error is
+// INVALID_ARGUMENT, NOT_FOUND or RESOURCE_EXHAUSTED and starts with the path of the field at fault,
+// then says what was expected. `path` arguments are prefixes of such paths: "" or, say, "frame.".
 #pragma once
 
 #include <string>
@@ -43,9 +43,8 @@ absl::StatusOr<FrameRequest> FrameRequestFromWire(const v1::RenderFrameRequest& 
 
 v1::TraceRaysRequest RaysToWire(const std::string& scene, const std::vector<Ray>& rays,
                                 const RenderOptions& options);
-// Directions stay as they were sent: finite and not zero, not necessarily of unit length.
-absl::StatusOr<std::vector<Ray>> RaysFromWire(const v1::TraceRaysRequest& message,
-                                              const RenderLimits& limits);
+// As they were sent: SceneHost::TraceRays checks them and makes directions unit length.
+std::vector<Ray> RaysFromWire(const v1::TraceRaysRequest& message);
 
 v1::TraceRaysReply RayBatchToWire(const RayBatch& batch, const SceneVersion& version);
 // DATA_LOSS for an answer that no server of this version sends.

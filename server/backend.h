@@ -1,0 +1,75 @@
+// What the server does, as functions of messages, without gRPC: every request is checked here, by
+// way of core/io/wire.h, and answered from the scene it names.
+//
+// Thread safety: all methods may be called from any thread.
+#pragma once
+
+#include <spdlog/logger.h>
+
+#include <chrono>
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "core/render/scene_host.h"
+#include "linetree/v1/service.pb.h"
+#include "server/budget.h"
+#include "server/options.h"
+#include "server/scene_store.h"
+#include "server/work_queue.h"
+
+namespace linetree {
+
+class Backend {
+ public:
+  // `options` must be valid.
+  Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log);
+
+  const ServerLimits& limits() const { return options_.limits; }
+  // Takes the scenes that options.scenes names.
+  absl::Status LoadSceneFiles();
+
+  absl::StatusOr<v1::SceneInfo> LoadScene(v1::LoadSceneRequest request);
+  v1::ListScenesReply ListScenes() const;
+  absl::StatusOr<v1::SceneInfo> DescribeScene(const v1::DescribeSceneRequest& request) const;
+  absl::StatusOr<v1::UnloadSceneReply> UnloadScene(const v1::UnloadSceneRequest& request);
+  absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
+  absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
+                                               const CancelToken& cancel);
+
+  // A frame that has been checked and has its memory set aside; nothing is rendered yet.
+  struct PreparedFrame {
+    NamedHost scene;
+    FrameRequest request;
+    bool all_layers;
+    Budget::Share memory;
+  };
+  // `path` is a prefix of the paths in errors, "" or "frame.".
+  absl::StatusOr<PreparedFrame> PrepareFrame(const v1::RenderFrameRequest& request,
+                                             absl::string_view path);
+  absl::StatusOr<Frame> Render(const PreparedFrame& frame, const CancelToken& cancel);
+
+  // Where renders and loads run; both are done when the Backend dies.
+  WorkQueue& renders() { return renders_; }
+  WorkQueue& loads() { return loads_; }
+  // Places for flights.
+  Budget& flights() { return flights_; }
+  // "No room now" with a hint when to come back.
+  absl::Status Busy(absl::string_view what) const;
+
+ private:
+  absl::StatusOr<std::shared_ptr<const Scene>> BuildFrom(v1::LoadSceneRequest request) const;
+  v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene) const;
+
+  const ServerOptions options_;
+  const std::shared_ptr<spdlog::logger> log_;
+  const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  SceneStore scenes_;
+  WorkerPool pool_;
+  Budget frame_bytes_;
+  Budget flights_;
+  // Last: their threads use all of the above.
+  WorkQueue renders_;
+  WorkQueue loads_;
+};
+
+}  // namespace linetree

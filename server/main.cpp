@@ -1,0 +1,110 @@
+// linetreed: flags in, a server until SIGTERM or SIGINT.
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "server/server.h"
+
+namespace linetree {
+namespace {
+
+struct Flags {
+  std::vector<std::string> scenes;
+  std::string log_level = "info";
+  std::string judge = "paper";
+  int64_t drain_timeout_ms = 0;
+};
+
+void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
+  app.add_option("--scene", flags.scenes, "NAME=FILE: a scene to load; may be repeated");
+  app.add_option("--listen", options.listen, "HOST:PORT; port 0 takes a free one")
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "rendering threads; 0: one per hardware thread")
+      ->capture_default_str();
+  app.add_option("--render-slots", options.render_slots, "frames worked on at a time")
+      ->capture_default_str();
+  app.add_option("--memory", options.memory_bytes,
+                 "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
+      ->default_str("1GiB");
+  app.add_option("--epsilon", options.defaults.max_relative_error,
+                 "relative error that requests get which name none")
+      ->capture_default_str();
+  app.add_option("--judge", flags.judge, "judge of requests that name none")
+      ->check(CLI::IsMember({"paper"}))
+      ->capture_default_str();
+  app.add_option("--max-depth", options.defaults.limits.max_depth,
+                 "rays on a path, the eye ray counted")
+      ->capture_default_str();
+  app.add_option("--min-weight", options.defaults.limits.min_weight,
+                 "a path ends when its weight falls below this")
+      ->capture_default_str();
+  flags.drain_timeout_ms = options.drain_timeout_ms.count();
+  app.add_option("--drain-timeout-ms", flags.drain_timeout_ms,
+                 "how long open calls may go on after the signal to stop")
+      ->capture_default_str();
+  app.add_option("--log-level", flags.log_level, "what is logged to standard error")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+}
+
+absl::Status Finish(const Flags& flags, ServerOptions& options) {
+  for (const std::string& flag : flags.scenes) {
+    auto scene = ParseSceneFlag(flag);
+    if (!scene.ok()) return scene.status();
+    options.scenes.push_back(*std::move(scene));
+  }
+  options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
+  return ValidateServerOptions(options);
+}
+
+// Blocks the signals that end the server in this thread and all that it starts, so that one thread
+// may wait for them.
+sigset_t BlockEndSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  // Whoever read our standard output may go away.
+  signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
+
+int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
+  const sigset_t signals = BlockEndSignals();
+  auto server = Server::Start(options, log);
+  if (!server.ok()) {
+    log->error("{}", std::string(server.status().message()));
+    return 1;
+  }
+  std::printf("listening on %s\n", (*server)->address().c_str());
+  std::fflush(stdout);
+  int signal = 0;
+  sigwait(&signals, &signal);
+  log->info("signal {}: draining for at most {} ms", signal, options.drain_timeout_ms.count());
+  (*server)->Drain(options.drain_timeout_ms);
+  log->info("stopped");
+  return 0;
+}
+
+}  // namespace
+}  // namespace linetree
+
+int main(int argc, char** argv) {
+  CLI::App app{"Serves radiance from shared caches of scenes."};
+  linetree::ServerOptions options;
+  linetree::Flags flags;
+  linetree::AddFlags(app, options, flags);
+  CLI11_PARSE(app, argc, argv);
+
+  auto log = spdlog::stderr_color_mt("linetreed");
+  log->set_level(spdlog::level::from_str(flags.log_level));
+  if (auto status = linetree::Finish(flags, options); !status.ok()) {
+    log->error("{}", std::string(status.message()));
+    return 2;
+  }
+  return linetree::Serve(options, log);
+}

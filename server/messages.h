@@ -1,0 +1,28 @@
+// Requests and replies as gRPC carries them. Requests reach us unparsed: gRPC answers a malformed
+// one with an empty UNIMPLEMENTED, and would build ten million rays before anybody can refuse them.
+#pragma once
+
+#include <google/protobuf/message.h>
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/status.h>
+
+#include "absl/status/status.h"
+#include "server/limits.h"
+
+namespace linetree {
+
+// OK, INVALID_ARGUMENT for what is not such a message, RESOURCE_EXHAUSTED for one of more than
+// max_bytes.
+absl::Status Parse(const grpc::ByteBuffer& bytes, size_t max_bytes,
+                   google::protobuf::Message* message);
+
+// How often the field stands at the top level; stops early at malformed bytes.
+uint64_t CountField(const grpc::ByteBuffer& bytes, int field_number);
+
+grpc::ByteBuffer Serialize(const google::protobuf::Message& message);
+
+// The status for Finish. A refusal also tells the caller's gRPC when to try again, or not to.
+grpc::Status Finished(const absl::Status& status, grpc::CallbackServerContext* context);
+
+}  // namespace linetree

@@ -1,0 +1,80 @@
+#include "server/options.h"
+
+#include <set>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "core/io/wire.h"
+
+namespace linetree {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+constexpr int kMaxRenderSlots = 64;
+// Less than this cannot hold the cells of a single view.
+constexpr uint64_t kMinMemoryBytes = uint64_t{1} << 20;
+constexpr std::chrono::hours kMaxDrain{1};
+
+absl::Status Expected(absl::string_view flag, absl::string_view expected, absl::string_view got) {
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": expected ", expected, ", got ", got));
+}
+
+absl::Status CheckRange(absl::string_view flag, int64_t value, int64_t lowest, int64_t highest) {
+  if (value >= lowest && value <= highest) return absl::OkStatus();
+  return Expected(flag, absl::StrCat("a number in [", lowest, ", ", highest, "]"),
+                  absl::StrCat(value));
+}
+
+absl::Status CheckScenes(const std::vector<SceneFile>& scenes) {
+  std::set<std::string> names;
+  for (const SceneFile& scene : scenes) {
+    if (auto status = ValidateSceneName(scene.name, "--scene"); !status.ok()) return status;
+    if (scene.path.empty()) return Expected("--scene", "NAME=FILE", scene.name + "=");
+    if (!names.insert(scene.name).second) {
+      return Expected("--scene", "different names", Quoted(scene.name) + " twice");
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Core names the fields of a request; here they are flags.
+absl::Status CheckDefaults(const RenderOptions& defaults) {
+  const auto status = ValidateOptions(defaults);
+  return {status.code(),
+          absl::StrReplaceAll(status.message(), {{"options.max_relative_error", "--epsilon"},
+                                                 {"options.max_depth", "--max-depth"},
+                                                 {"options.min_weight", "--min-weight"}})};
+}
+
+}  // namespace
+
+absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag) {
+  const size_t equals = flag.find('=');
+  if (equals == std::string::npos) return Expected("--scene", "NAME=FILE", Quoted(flag));
+  return SceneFile{flag.substr(0, equals), flag.substr(equals + 1)};
+}
+
+absl::Status ValidateServerOptions(const ServerOptions& options) {
+  if (auto status = CheckScenes(options.scenes); !status.ok()) return status;
+  if (options.listen.empty()) return Expected("--listen", "HOST:PORT", "nothing");
+  auto status = CheckRange("--threads", options.threads, 0, kMaxThreads);
+  if (!status.ok()) return status;
+  status = CheckRange("--render-slots", options.render_slots, 1, kMaxRenderSlots);
+  if (!status.ok()) return status;
+  status = CheckRange("--drain-timeout-ms", options.drain_timeout_ms.count(), 0,
+                      std::chrono::milliseconds(kMaxDrain).count());
+  if (!status.ok()) return status;
+  if (options.memory_bytes < kMinMemoryBytes) {
+    return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
+                    absl::StrCat(options.memory_bytes));
+  }
+  return CheckDefaults(options.defaults);
+}
+
+bool IsLoopback(const std::string& listen) {
+  return absl::StartsWith(listen, "127.") || absl::StartsWith(listen, "localhost:") ||
+         absl::StartsWith(listen, "[::1]:") || absl::StartsWith(listen, "unix:");
+}
+
+}  // namespace linetree

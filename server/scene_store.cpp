@@ -1,0 +1,83 @@
+#include "server/scene_store.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/io/wire.h"
+
+namespace linetree {
+
+absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
+                                          std::shared_ptr<const Scene> scene, bool replace) {
+  if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
+  // Dies after the lock is released: a big cache takes its time.
+  std::shared_ptr<SceneHost> replaced;
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(name);
+  if (found != hosts_.end()) {
+    if (found->second->scene().version == scene->version) return NamedHost{name, found->second};
+    if (!replace) {
+      return absl::AlreadyExistsError(
+          absl::StrCat("name: ", Quoted(name), " holds other content (scene version ",
+                       found->second->scene().version, "); set replace to take its place"));
+    }
+  }
+  if (auto status = CheckRoom(found, *scene); !status.ok()) return status;
+  auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
+  if (found != hosts_.end()) replaced = std::move(found->second);
+  hosts_[name] = host;
+  return NamedHost{name, std::move(host)};
+}
+
+absl::Status SceneStore::CheckRoom(const Hosts::const_iterator& replaced,
+                                   const Scene& scene) const {
+  uint64_t objects = scene.objects.size();
+  size_t scenes = 1;
+  for (auto it = hosts_.begin(); it != hosts_.end(); ++it) {
+    if (it == replaced) continue;
+    ++scenes;
+    objects += it->second->scene().objects.size();
+  }
+  if (scenes > limits_.max_scenes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("name: the server holds ", limits_.max_scenes, " scenes already"));
+  }
+  if (objects > limits_.max_objects) {
+    return absl::ResourceExhaustedError(absl::StrCat("scene.objects: all scenes together may have ",
+                                                     limits_.max_objects, ", got ", objects));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<NamedHost> SceneStore::Find(const std::string& name, absl::string_view path) const {
+  if (auto status = ValidateSceneName(name, path); !status.ok()) return status;
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(name);
+  if (found == hosts_.end()) return Unknown(name, path);
+  return NamedHost{name, found->second};
+}
+
+absl::Status SceneStore::Unknown(const std::string& name, absl::string_view path) const {
+  return absl::NotFoundError(absl::StrCat(path, ": expected the name of one of the ", hosts_.size(),
+                                          " loaded scenes, got ", Quoted(name)));
+}
+
+std::vector<NamedHost> SceneStore::All() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<NamedHost> all;
+  for (const auto& [name, host] : hosts_) all.push_back({name, host});
+  return all;
+}
+
+absl::Status SceneStore::Remove(const std::string& name, absl::string_view path) {
+  if (auto status = ValidateSceneName(name, path); !status.ok()) return status;
+  std::shared_ptr<SceneHost> removed;  // dies after the lock is released
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(name);
+  if (found == hosts_.end()) return Unknown(name, path);
+  removed = std::move(found->second);
+  hosts_.erase(found);
+  return absl::OkStatus();
+}
+
+}  // namespace linetree

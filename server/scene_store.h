@@ -1,0 +1,57 @@
+// The scenes of a server by name, each with its cache.
+//
+// A host that is in use outlives its unloading: whoever holds it finishes with it.
+// Thread safety: all methods may be called from any thread.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/render/scene_host.h"
+
+namespace linetree {
+
+struct NamedHost {
+  std::string name;
+  std::shared_ptr<SceneHost> host;
+};
+
+class SceneStore {
+ public:
+  struct Limits {
+    size_t max_scenes = 256;
+    uint64_t max_objects = 16'000'000;          // in all scenes together
+    uint64_t memory_bytes = uint64_t{1} << 30;  // for the caches of all scenes together
+  };
+
+  explicit SceneStore(const Limits& limits) : limits_(limits) {}
+
+  // Keeps the scene under `name`. The same content again is a no-op that keeps the warm cache;
+  // other content is ALREADY_EXISTS unless `replace`. RESOURCE_EXHAUSTED when the store is full.
+  absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
+                                bool replace);
+
+  // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
+  absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
+
+  // By name.
+  std::vector<NamedHost> All() const;
+
+  absl::Status Remove(const std::string& name, absl::string_view path);
+
+ private:
+  using Hosts = std::map<std::string, std::shared_ptr<SceneHost>>;
+
+  absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
+  absl::Status Unknown(const std::string& name, absl::string_view path) const;
+
+  const Limits limits_;
+  mutable std::mutex mutex_;
+  Hosts hosts_;  // guarded by mutex_
+};
+
+}  // namespace linetree

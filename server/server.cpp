@@ -1,0 +1,69 @@
+#include "server/server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/server_builder.h>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+
+namespace linetree {
+namespace {
+
+// Peers that died without a word are noticed within these two together.
+constexpr int kKeepaliveTime_ms = 30'000;
+constexpr int kKeepaliveTimeout_ms = 10'000;
+
+std::string WithPort(const std::string& listen, int port) {
+  if (absl::StartsWith(listen, "unix:")) return listen;
+  return absl::StrCat(listen.substr(0, listen.rfind(':')), ":", port);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options,
+                                                      std::shared_ptr<spdlog::logger> log) {
+  if (auto status = ValidateServerOptions(options); !status.ok()) return status;
+  std::unique_ptr<Server> server(new Server(options, log));
+  if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
+  if (auto status = server->Listen(options); !status.ok()) return status;
+  if (!IsLoopback(options.listen)) {
+    log->warn("{} can be reached from other machines, and nothing asks who calls",
+              server->address_);
+  }
+  return server;
+}
+
+absl::Status Server::Listen(const ServerOptions& options) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  int port = 0;
+  builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&service_);
+  builder.SetMaxReceiveMessageSize(options.limits.max_message_bytes);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS,
+                             options.limits.max_streams_per_connection);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout_ms);
+  // Otherwise a second server on the same port would silently get half of the calls.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  grpc_ = builder.BuildAndStart();
+  if (grpc_ == nullptr) {
+    return absl::UnavailableError(absl::StrCat("--listen: cannot listen on ", options.listen));
+  }
+  address_ = WithPort(options.listen, port);
+  return absl::OkStatus();
+}
+
+void Server::Drain(std::chrono::milliseconds timeout_ms) {
+  if (grpc_ == nullptr) return;
+  if (auto* health = grpc_->GetHealthCheckService()) health->SetServingStatus(false);
+  service_.Drain();
+  grpc_->Shutdown(std::chrono::system_clock::now() + timeout_ms);
+  grpc_.reset();
+}
+
+Server::~Server() { Drain(std::chrono::milliseconds(0)); }
+
+}  // namespace linetree
