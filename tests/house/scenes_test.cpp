@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,21 @@ Frame Render(const std::string& name, const std::string& camera, Mode mode) {
   auto frame = host.RenderFrame(request, pool);
   EXPECT_TRUE(frame.ok()) << frame.status();
   return *std::move(frame);
+}
+
+std::vector<uint64_t> CellsTried(SceneHost& host, const std::vector<Camera>& cameras) {
+  WorkerPool pool(1);
+  std::vector<uint64_t> tried;
+  for (const Camera& camera : cameras) {
+    FrameRequest request;
+    request.camera = camera;
+    request.width = request.height = kSide / 2;
+    request.options.max_relative_error = 0.25;
+    const auto frame = host.RenderFrame(request, pool);
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    tried.push_back(frame->stats.cells_tried);
+  }
+  return tried;
 }
 
 double PerPixel(uint64_t count) { return static_cast<double>(count) / (kSide * kSide); }
@@ -104,6 +120,29 @@ TEST(Paths, WalkThroughNothing) {
       const Hit hit = tracer.Intersect((*cameras)[i - 1].eye, step, {});
       EXPECT_FALSE(hit.IsHit() && hit.t <= 1) << "between frames " << i - 1 << " and " << i;
     }
+  }
+}
+
+// What the headers of the paths promise: frames build on those before them, and who comes second
+// finds everything built.
+TEST(Paths, LaterFramesAndFlightsFindCellsBuilt) {
+  for (const auto& [scene_name, path_name] : {std::pair{"face.textproto", "face_walk"},
+                                              {"room.textproto", "room_walk"},
+                                              {"glass.textproto", "glass_orbit"},
+                                              {"spd/balls_3.nff", "balls_orbit"},
+                                              {"spd/tree_8.nff", "tree_orbit"}}) {
+    SCOPED_TRACE(path_name);
+    SceneHost host(Load(scene_name));
+    const auto path = LoadCameraPath(kScenes / "paths" / (std::string(path_name) + ".textproto"));
+    const auto cameras = SampleCameraPath(*path, path->frames);
+    const std::vector<uint64_t> first = CellsTried(host, *cameras);
+    const std::vector<uint64_t> second = CellsTried(host, *cameras);
+    const auto total = [](const std::vector<uint64_t>& tried) {
+      return std::accumulate(tried.begin(), tried.end(), uint64_t{0});
+    };
+    ASSERT_GT(first[0], 0U);
+    EXPECT_LT(2 * (total(first) - first[0]), first[0] * (first.size() - 1));
+    EXPECT_LT(20 * total(second), total(first));
   }
 }
 
