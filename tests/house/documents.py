@@ -1,4 +1,5 @@
-"""Scenes say what they show; what the README tells people to type exists."""
+"""Scenes say what they show; what the README tells people to type and to open exists; the root holds
+nothing that it does not name."""
 
 import os
 import re
@@ -9,6 +10,10 @@ SCENE_SUFFIXES = {".textproto"}
 PROGRAMS = {"linetree", "linetreed"}
 # A header of fewer words than this says nothing.
 MIN_HEADER_WORDS = 12
+# What may stand in the root, apart from dotfiles and what .gitignore names.
+ROOT = {"README.md", "CMakeLists.txt", "demo.sh", "test.sh",
+        "client", "core", "proto", "scenes", "server", "tests"}
+_LINK = re.compile(r"\]\(([^)#:]+)\)")
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
@@ -93,3 +98,16 @@ def _bad_words(root, words, help_text):
             if not (root / file).exists():
                 found.append(f"{' '.join(words)}: {file} does not exist")
     return found
+
+
+def links_that_lead_nowhere(root):
+    """Relative links of the README to files and folders that do not exist."""
+    targets = _LINK.findall((root / "README.md").read_text())
+    return [target for target in targets if not (root / target).exists()]
+
+
+def strangers_in_the_root(root):
+    """Entries of the root that ROOT does not list."""
+    ignored = {line.strip("/ ") for line in (root / ".gitignore").read_text().splitlines()}
+    return sorted(entry.name for entry in root.iterdir()
+                  if entry.name not in ROOT | ignored and not entry.name.startswith("."))

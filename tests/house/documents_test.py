@@ -60,6 +60,14 @@ class Readme(unittest.TestCase):
         text = "```console\n$ a \\\n  --b   # why\n```\n```proto\nnot { a: command }\n```\n"
         self.assertEqual(documents.readme_commands(text), [["a", "--b"]])
 
+    def test_its_links_lead_somewhere(self):
+        self.assertEqual(documents.links_that_lead_nowhere(PROJECT), [])
+
+    def test_links_that_lead_nowhere_are_caught(self):
+        text = "[a](core/a.h) [b](core/b.h) [c](https://example.org/c) ![d](d.png)\n"
+        with MadeTree({"README.md": text, "core/a.h": ""}) as root:
+            self.assertEqual(documents.links_that_lead_nowhere(root), ["core/b.h", "d.png"])
+
     @staticmethod
     def _files(command):
         return {
@@ -69,6 +77,17 @@ class Readme(unittest.TestCase):
             "bin/linetreed": PROGRAM,
             "scenes/a.nff": "",
         }
+
+
+class Root(unittest.TestCase):
+    def test_it_is_bare(self):
+        self.assertEqual(documents.strangers_in_the_root(PROJECT), [])
+
+    def test_strangers_are_caught(self):
+        files = {".gitignore": "/build/\n", "build/x": "", "README.md": "", "notes.txt": "",
+                 "src/a.cpp": "", ".clang-tidy": ""}
+        with MadeTree(files) as root:
+            self.assertEqual(documents.strangers_in_the_root(root), ["notes.txt", "src"])
 
 
 if __name__ == "__main__":

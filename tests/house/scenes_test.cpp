@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -90,6 +92,21 @@ TEST(Scenes, HaveTheNameOfTheirFile) {
     ASSERT_TRUE(scene.ok()) << scene.status();
     EXPECT_EQ((*scene)->name, file.stem());
   }
+}
+
+TEST(Scenes, TheExampleInTheReadmeLoads) {
+  std::ifstream file(fs::path(LINETREE_SOURCE_DIR) / "README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  const std::string fence = "```textproto\n";
+  const size_t begin = readme.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const size_t from = begin + fence.size();
+  const auto source =
+      ParseSceneText(readme.substr(from, readme.find("```", from) - from), "README");
+  ASSERT_TRUE(source.ok()) << source.status();
+  const auto scene = BuildScene(**source);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_EQ((*scene)->objects.size(), 2U);
 }
 
 TEST(Paths, AllLoadAndCanBeFlown) {
