@@ -26,7 +26,14 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
   if (found != hosts_.end()) replaced = std::move(found->second);
   hosts_[name] = host;
+  ShareMemory();
   return NamedHost{name, std::move(host)};
+}
+
+void SceneStore::ShareMemory() {
+  for (const auto& [name, host] : hosts_) {
+    host->cache().SetMemoryBytes(limits_.memory_bytes / hosts_.size());
+  }
 }
 
 absl::Status SceneStore::CheckRoom(const Hosts::const_iterator& replaced,
@@ -77,6 +84,7 @@ absl::Status SceneStore::Remove(const std::string& name, absl::string_view path)
   if (found == hosts_.end()) return Unknown(name, path);
   removed = std::move(found->second);
   hosts_.erase(found);
+  ShareMemory();
   return absl::OkStatus();
 }
 

@@ -1,6 +1,7 @@
 // The scenes of a server by name, each with its cache.
 //
-// A host that is in use outlives its unloading: whoever holds it finishes with it.
+// A host that is in use outlives its unloading: whoever holds it finishes with it. The caches share
+// one budget in equal parts, which change when scenes come and go.
 // Thread safety: all methods may be called from any thread.
 #pragma once
 
@@ -47,6 +48,7 @@ class SceneStore {
   using Hosts = std::map<std::string, std::shared_ptr<SceneHost>>;
 
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
+  void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 
   const Limits limits_;

@@ -15,8 +15,8 @@ bool VariesAtAll(const Scene& scene, const Material& material) {
   return lit || !IsBlack(material.reflect) || !IsBlack(material.transmit);
 }
 
-uint64_t SampleBudget(const CacheOptions& options) {
-  return static_cast<uint64_t>(kSampleShare * static_cast<double>(options.memory_bytes));
+uint64_t SampleBudget(uint64_t memory_bytes) {
+  return static_cast<uint64_t>(kSampleShare * static_cast<double>(memory_bytes));
 }
 
 }  // namespace
@@ -24,9 +24,9 @@ uint64_t SampleBudget(const CacheOptions& options) {
 RadianceCache::RadianceCache(const Tracer& tracer, const CacheOptions& options)
     : tracer_(tracer),
       options_(options),
-      cell_budget_(options.memory_bytes - SampleBudget(options)),
       judge_(tracer),
-      samples_(SampleBudget(options)) {
+      cell_budget_(options.memory_bytes - SampleBudget(options.memory_bytes)),
+      samples_(SampleBudget(options.memory_bytes)) {
   const Scene& scene = tracer.scene();
   charts_.reserve(scene.objects.size());
   caches_.reserve(scene.objects.size());
@@ -106,6 +106,15 @@ void RadianceCache::Find(const Session& session, double epsilon, std::span<const
       answer.radiance = Evaluate(*found.interpolant, LocalCoords(found.cell, query.coords));
     }
   }
+}
+
+void RadianceCache::SetMemoryBytes(uint64_t memory_bytes) {
+  std::unique_lock lock(mutex_);
+  cell_budget_ = memory_bytes - SampleBudget(memory_bytes);
+  samples_.SetLimit(SampleBudget(memory_bytes));
+  // A tick of its own: no session's cells are exempt.
+  clock_ = (clock_ + 1) & kStampMask;
+  if (CellBytes() > cell_budget_) MakeRoom(0, clock_);
 }
 
 uint64_t RadianceCache::CellBytes() const {

@@ -95,6 +95,10 @@ class RadianceCache {
   BuildStats Build(const Session& session, std::span<const CellRef> cells,
                    const ParallelLoop& loop);
 
+  // Another budget than options().memory_bytes; what exceeds it is evicted now. For those who share
+  // one budget between several caches.
+  void SetMemoryBytes(uint64_t memory_bytes);
+
   // Exact bytes held; CountBytes recomputes them from scratch.
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
@@ -124,13 +128,13 @@ class RadianceCache {
 
   const Tracer& tracer_;
   const CacheOptions options_;
-  const uint64_t cell_budget_;  // what the samples' share leaves
   PaperJudge judge_;
   std::vector<ObjectChart> charts_;  // by object
   std::vector<bool> caches_;         // by object: whether looking up can pay
 
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
+  uint64_t cell_budget_;  // what the samples' share leaves
   CellPools pools_;
   SampleStore samples_;
   std::vector<std::unique_ptr<Forest>> forests_;

@@ -82,6 +82,11 @@ void SampleStore::EndRound() {
   DropIf([&](const SampleKey&, const Entry& entry) { return entry.used <= newest_dropped; });
 }
 
+void SampleStore::SetLimit(uint64_t limit_bytes) {
+  limit_bytes_ = limit_bytes;
+  EndRound();
+}
+
 void SampleStore::DropForest(uint32_t forest) {
   DropIf([&](const SampleKey& key, const Entry&) { return key.forest == forest; });
 }

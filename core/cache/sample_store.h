@@ -37,6 +37,8 @@ class SampleStore {
   // were used longest ago.
   void EndRound();
   void DropForest(uint32_t forest);
+  // Drops what does not fit any more, as EndRound does.
+  void SetLimit(uint64_t limit_bytes);
   void Clear();
 
   uint64_t ByteSize() const { return sample_bytes_ + TableBytes(); }

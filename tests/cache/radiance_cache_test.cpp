@@ -59,6 +59,18 @@ TEST_F(RadianceCacheTest, BytesAreExactAndWithinTheBudget) {
   }
 }
 
+TEST_F(RadianceCacheTest, ASmallerBudgetTakesEffectAtOnce) {
+  RadianceCache cache(tracer_, {});
+  Exercise(cache, 46, 60);
+  ASSERT_GT(cache.ByteSize(), 100'000u);
+  cache.SetMemoryBytes(100'000);
+  EXPECT_LE(cache.ByteSize(), 100'000u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  EXPECT_GT(cache.CellCount(), 0u);
+  Exercise(cache, 47, 20);
+  EXPECT_LE(cache.ByteSize(), 100'000u);
+}
+
 TEST_F(RadianceCacheTest, EvictionTakesWhatWasUsedLongestAgo) {
   CacheOptions options;
   options.memory_bytes = 200'000;
