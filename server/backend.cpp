@@ -95,43 +95,19 @@ absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneR
 absl::StatusOr<v1::GetStatsReply> Backend::GetStats(const v1::GetStatsRequest& request) const {
   v1::GetStatsReply reply;
   if (request.scene().empty()) {
-    for (const NamedHost& scene : scenes_.All()) *reply.add_scenes() = StatsOf(scene);
+    for (const NamedHost& scene : scenes_.All()) {
+      *reply.add_scenes() = SceneStatsToWire(scene.name, *scene.host);
+    }
   } else {
     auto scene = scenes_.Find(request.scene(), "scene");
     if (!scene.ok()) return scene.status();
-    *reply.add_scenes() = StatsOf(*scene);
+    *reply.add_scenes() = SceneStatsToWire(scene->name, *scene->host);
   }
   reply.set_memory_budget_bytes(options_.memory_bytes);
   const std::chrono::duration<double> up = std::chrono::steady_clock::now() - started_;
   reply.set_uptime_s(up.count());
   reply.set_server_version(LINETREE_VERSION);
   return reply;
-}
-
-v1::GetStatsReply::SceneStats Backend::StatsOf(const NamedHost& scene) const {
-  const HostTotals totals = scene.host->totals();
-  v1::GetStatsReply::SceneStats stats;
-  stats.set_scene(scene.name);
-  stats.set_scene_version(scene.host->scene().version);
-  stats.set_frames(totals.frames);
-  stats.set_ray_batches(totals.ray_batches);
-  *stats.mutable_totals() = FrameStatsToWire(totals.stats, 0, 0);
-  stats.set_cache_bytes(scene.host->cache().ByteSize());
-  stats.set_cells(scene.host->cache().CellCount());
-  const auto cells = scene.host->cache().CellVerdicts();
-  for (size_t object = 0; object < cells.size(); ++object) {
-    v1::GetStatsReply::ObjectStats* out = nullptr;
-    for (size_t v = 0; v < kVerdictCount; ++v) {
-      if (cells[object][v] == 0) continue;
-      if (out == nullptr) {
-        out = stats.add_objects();
-        out->set_object(static_cast<uint32_t>(object));
-        out->set_name(scene.host->scene().objects[object].name);
-      }
-      (*out->mutable_cells())[std::string(kVerdictNames[v])] = cells[object][v];
-    }
-  }
-  return stats;
 }
 
 absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest& request,

@@ -58,7 +58,6 @@ class Backend {
 
  private:
   absl::StatusOr<std::shared_ptr<const Scene>> BuildFrom(v1::LoadSceneRequest request) const;
-  v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene) const;
 
   const ServerOptions options_;
   const std::shared_ptr<spdlog::logger> log_;

@@ -54,6 +54,9 @@ absl::StatusOr<RayBatch> RayBatchFromWire(const v1::TraceRaysReply& message);
 v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height);
 FrameStats FrameStatsFromWire(const v1::FrameStats& message);
 
+// What the host has done and holds; cells by verdict for the objects that have any.
+v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host);
+
 v1::SceneInfo SceneInfoToWire(const std::string& name, const Scene& scene, uint64_t cache_bytes);
 
 }  // namespace linetree

@@ -6,6 +6,15 @@ namespace {
 
 RayCounts Sum(RayCounts a, const RayCounts& b) { return a += b; }
 
+using Counts = std::array<uint64_t, kVerdictCount>;
+
+// Only those that are not 0.
+void CountsToWire(const Counts& counts, google::protobuf::Map<std::string, uint64_t>* map) {
+  for (size_t v = 0; v < kVerdictCount; ++v) {
+    if (counts[v] > 0) (*map)[std::string(kVerdictNames[v])] = counts[v];
+  }
+}
+
 }  // namespace
 
 v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) {
@@ -31,10 +40,7 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_interpolated(stats.interpolated);
   message.set_traced(stats.traced);
   message.set_background(stats.background);
-  for (size_t v = 0; v < kVerdictCount; ++v) {
-    if (stats.verdicts[v] == 0) continue;
-    (*message.mutable_verdicts())[std::string(kVerdictNames[v])] = stats.verdicts[v];
-  }
+  CountsToWire(stats.verdicts, message.mutable_verdicts());
   message.set_cells_tried(stats.cells_tried);
   message.set_cells_accepted(stats.cells_accepted);
   message.set_cells_evicted(stats.cells_evicted);
@@ -72,6 +78,27 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
   stats.cache_bytes = message.cache_bytes();
   stats.wall_ms = message.wall_ms();
   stats.cpu_ms = message.cpu_ms();
+  return stats;
+}
+
+v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host) {
+  const HostTotals totals = host.totals();
+  v1::GetStatsReply::SceneStats stats;
+  stats.set_scene(name);
+  stats.set_scene_version(host.scene().version);
+  stats.set_frames(totals.frames);
+  stats.set_ray_batches(totals.ray_batches);
+  *stats.mutable_totals() = FrameStatsToWire(totals.stats, 0, 0);
+  stats.set_cache_bytes(host.cache().ByteSize());
+  stats.set_cells(host.cache().CellCount());
+  const std::vector<Counts> cells = host.cache().CellVerdicts();
+  for (size_t object = 0; object < cells.size(); ++object) {
+    if (cells[object] == Counts{}) continue;
+    v1::GetStatsReply::ObjectStats* out = stats.add_objects();
+    out->set_object(static_cast<uint32_t>(object));
+    out->set_name(host.scene().objects[object].name);
+    CountsToWire(cells[object], out->mutable_cells());
+  }
   return stats;
 }
 
