@@ -146,6 +146,22 @@ TEST(Bvh, NoBoxOnTheWayIsMissed) {
   EXPECT_LT(visited, 5000u * 300u / 4) << "the hierarchy prunes next to nothing";
 }
 
+// A ray in the plane of a (widened) box side: 0 * inf, which must not turn into a miss.
+TEST(RaySlabs, RaysInABoxsPlaneMeetIt) {
+  constexpr double kUnitPad = 1 / RaySlabs<double>::kPad;  // the magnitude that makes the pad 1
+  const double t_max = Box3::kInf;
+  for (const double zero : {0.0, -0.0}) {
+    const RaySlabs<double> slabs(Vec3d{0, 0, 0}, Vec3d{zero, 0.5, 1}, kUnitPad);
+    double entry = 0;
+    EXPECT_TRUE(slabs.Meets({{1, -9, 3}, {2, 9, 4}}, t_max, entry));
+    EXPECT_EQ(entry, 2) << "one pad nearer";
+    EXPECT_TRUE(slabs.Meets({{-2, -9, 3}, {-1, 9, 4}}, t_max, entry));
+    EXPECT_FALSE(slabs.Meets({{1.5, -9, 3}, {2, 9, 4}}, t_max, entry));
+    EXPECT_FALSE(slabs.Meets({{1, -9, 3}, {2, 9, 4}}, 1.5, entry)) << "behind the limit";
+    EXPECT_FALSE(slabs.Meets({{1, -9, -4}, {2, 9, -3}}, t_max, entry)) << "behind the origin";
+  }
+}
+
 TEST(Bvh, LoweringTheLimitPrunesWhatLiesBehind) {
   std::vector<Box3> boxes;
   for (int i = 0; i < 1024; ++i) boxes.push_back({{i + 0.1, -1, -1}, {i + 0.9, 1, 1}});

@@ -104,6 +104,38 @@ TEST(Twins, DegenerateRaysAgreeToo) {
   }
 }
 
+// Rays at the edges of squares that fill their flat boxes, from far away: whether they hit is
+// decided by rounding, and the hierarchy may not decide it differently.
+TEST(Twins, GrazingRaysFromAfarAgree) {
+  Random random(20265);
+  Scene scene;
+  test::AddMaterial(scene, test::Matte({1, 1, 1}));
+  constexpr int kSquares = 100;
+  for (int i = 0; i < kSquares; ++i) {
+    const Vec3d a = random.InCube(100);
+    const Vec3d b = a + Vec3d{1, 1, 0};
+    test::AddObject(scene, test::Polygon({a, {b.x, a.y, a.z}, b, {a.x, b.y, a.z}}));
+  }
+  const Tracer flat(scene, Hierarchy::kFlat);
+  const Tracer bvh(scene, Hierarchy::kBvh);
+  int hits = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const int square = random.Below(kSquares);
+    const auto& polygon = std::get<PolygonShape>(scene.objects[static_cast<size_t>(square)].shape);
+    const size_t corner = static_cast<size_t>(random.Below(4));
+    const Vec3d edge = polygon.vertices[(corner + 1) % 4] - polygon.vertices[corner];
+    const Vec3d target = polygon.vertices[corner] + edge * random.Unit();
+    const Vec3d origin = target + random.Direction() * random.LogUniform(1e3, 1e6);
+    const Hit a = flat.Intersect(origin, target - origin, {});
+    const Hit b = bvh.Intersect(origin, target - origin, {});
+    ASSERT_EQ(a.object, b.object) << "ray " << k;
+    ASSERT_EQ(a.t, b.t);
+    hits += a.object == square;
+  }
+  EXPECT_GT(hits, 4000);
+  EXPECT_LT(hits, 16000);
+}
+
 // Rounding of double, seen through up to five curved mirrors and lenses, each of which magnifies
 // it.
 constexpr double kMaxRoundingError = 1e-8;
