@@ -1,0 +1,12 @@
+// linetree bench: measurements, one sub-command each.
+#include "client/command/command.h"
+
+namespace linetree {
+
+void AddBench(CLI::App& parent, Commands& commands) {
+  CLI::App* app = parent.add_subcommand("bench", "Measurements of accuracy and speed");
+  app->require_subcommand(1);
+  AddBenchError(*app, commands);
+}
+
+}  // namespace linetree

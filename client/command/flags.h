@@ -1,0 +1,70 @@
+// The flags that sub-commands share, one group each; the same everywhere.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/io/layer_colors.h"
+#include "core/render/scene_host.h"
+#include "linetree/v1/service.pb.h"
+
+namespace linetree {
+
+// Where answers come from: a server, or a cache in this process.
+struct ConnectionFlags {
+  std::string server = "127.0.0.1:50051";
+  bool local = false;
+  int threads = 0;                                      // --local only; 0: all hardware threads
+  uint64_t memory_bytes = CacheOptions{}.memory_bytes;  // --local only
+};
+void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags);
+
+struct SceneFlags {
+  std::string scene;  // FILE or NAME
+  bool replace = false;
+};
+void AddSceneFlags(CLI::App& app, SceneFlags& flags, bool required = true);
+
+struct SizeFlags {
+  int width = 512;
+  int height = 512;
+};
+void AddSizeFlags(CLI::App& app, SizeFlags& flags);
+
+struct ViewFlags {
+  std::string camera;
+  std::optional<Vec3d> eye, look_at, up;
+  std::optional<double> fov_deg;
+};
+void AddViewFlags(CLI::App& app, ViewFlags& flags);
+
+// The named camera (the first one without a name) with the given parts replaced. A scene without
+// cameras needs --eye and --look-at.
+absl::StatusOr<Camera> ResolveCamera(const v1::SceneInfo& scene, const ViewFlags& flags);
+
+// --mode, --judge, --epsilon and the path's limits, straight into the options.
+void AddOptionsFlags(CLI::App& app, RenderOptions& options);
+void AddLimitsFlags(CLI::App& app, PathLimits& limits);
+
+// -o, --layer and --stats.
+struct OutputFlags {
+  std::vector<std::string> pictures;  // .exr or .png
+  Layer layer = Layer::kBeauty;       // of .png
+  std::string stats;                  // JSON
+  bool quiet = false;
+};
+void AddOutputFlags(CLI::App& app, OutputFlags& flags);
+void AddStatsFlag(CLI::App& app, std::string& stats);
+void AddQuietFlag(CLI::App& app, bool& quiet);
+
+// The meaning of the colours of --layer verdict and --layer source, for --help.
+std::string LegendText();
+
+// Accepts names that end with one of the extensions, each written like ".png".
+CLI::Validator HasExtension(std::vector<std::string> extensions);
+
+}  // namespace linetree

@@ -1,0 +1,129 @@
+#include "client/command/local_client.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/io/load_scene.h"
+#include "core/io/wire.h"
+
+namespace linetree {
+
+LocalClient::LocalClient(int threads, uint64_t memory_bytes)
+    : memory_bytes_(memory_bytes), pool_(threads) {}
+
+absl::StatusOr<LocalClient::HostPointer> LocalClient::Find(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(name);
+  if (found != hosts_.end()) return found->second;
+  return absl::NotFoundError(
+      absl::StrCat("no scene '", name, "'; with --local a scene is given as a file"));
+}
+
+absl::StatusOr<v1::SceneInfo> LocalClient::AddScene(const std::string& name,
+                                                    std::shared_ptr<const Scene> scene,
+                                                    bool replace) {
+  const std::lock_guard lock(mutex_);
+  HostPointer& host = hosts_[name];
+  if (host == nullptr || (replace && host->scene().version != scene->version)) {
+    host = std::make_shared<SceneHost>(scene, CacheOptions{.memory_bytes = memory_bytes_});
+  } else if (host->scene().version != scene->version) {
+    return absl::AlreadyExistsError(absl::StrCat("there is another scene '", name, "'"));
+  }
+  return SceneInfoToWire(name, host->scene(), host->cache().ByteSize());
+}
+
+absl::StatusOr<v1::SceneInfo> LocalClient::LoadScene(const std::string& name,
+                                                     const v1::Scene& scene, bool replace) {
+  auto built = BuildScene(*SceneFromMessage(scene));
+  if (!built.ok()) return built.status();
+  return AddScene(name, *std::move(built), replace);
+}
+
+absl::StatusOr<std::vector<v1::SceneInfo>> LocalClient::ListScenes() {
+  const std::lock_guard lock(mutex_);
+  std::vector<v1::SceneInfo> infos;
+  for (const auto& [name, host] : hosts_) {
+    infos.push_back(SceneInfoToWire(name, host->scene(), host->cache().ByteSize()));
+  }
+  return infos;
+}
+
+absl::StatusOr<v1::SceneInfo> LocalClient::DescribeScene(const std::string& name) {
+  const absl::StatusOr<HostPointer> host = Find(name);
+  if (!host.ok()) return host.status();
+  return SceneInfoToWire(name, (*host)->scene(), (*host)->cache().ByteSize());
+}
+
+absl::Status LocalClient::UnloadScene(const std::string& name) {
+  HostPointer removed;  // destroyed after the lock is released
+  const std::lock_guard lock(mutex_);
+  const auto found = hosts_.find(name);
+  if (found == hosts_.end()) return absl::NotFoundError(absl::StrCat("no scene '", name, "'"));
+  removed = std::move(found->second);
+  hosts_.erase(found);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Frame> LocalClient::RenderFrame(const std::string& scene,
+                                               const FrameRequest& request,
+                                               const std::string& camera_name, bool all_layers,
+                                               const Progress& progress) {
+  const absl::StatusOr<HostPointer> host = Find(scene);
+  if (!host.ok()) return host.status();
+  FrameRequest resolved = request;
+  if (!camera_name.empty()) {
+    const Camera* camera = (*host)->scene().FindCamera(camera_name);
+    if (camera == nullptr) {
+      return absl::NotFoundError(absl::StrCat("no camera '", camera_name, "' in '", scene, "'"));
+    }
+    resolved.camera = *camera;
+  }
+  absl::StatusOr<Frame> frame = (*host)->RenderFrame(resolved, pool_, nullptr, progress);
+  if (frame.ok() && !all_layers) {
+    frame->object.clear();
+    frame->source.clear();
+    frame->verdict.clear();
+    frame->depth.clear();
+  }
+  return frame;
+}
+
+absl::Status LocalClient::Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
+                              bool all_layers,
+                              const std::function<void(size_t index, Frame frame)>& on_frame) {
+  for (size_t i = 0; i < requests.size(); ++i) {
+    absl::StatusOr<Frame> frame = RenderFrame(scene, requests[i], "", all_layers, nullptr);
+    if (!frame.ok()) return frame.status();
+    on_frame(i, *std::move(frame));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<RayBatch> LocalClient::TraceRays(const std::string& scene,
+                                                const std::vector<Ray>& rays,
+                                                const RenderOptions& options) {
+  const absl::StatusOr<HostPointer> host = Find(scene);
+  if (!host.ok()) return host.status();
+  return (*host)->TraceRays(rays, options, pool_);
+}
+
+absl::StatusOr<v1::GetStatsReply> LocalClient::GetStats(const std::string& scene) {
+  std::map<std::string, HostPointer> hosts;
+  if (scene.empty()) {
+    const std::lock_guard lock(mutex_);
+    hosts = hosts_;
+  } else {
+    const absl::StatusOr<HostPointer> host = Find(scene);
+    if (!host.ok()) return host.status();
+    hosts[scene] = *host;
+  }
+  v1::GetStatsReply reply;
+  for (const auto& [name, host] : hosts) *reply.add_scenes() = SceneStatsToWire(name, *host);
+  reply.set_memory_budget_bytes(memory_bytes_);
+  const std::chrono::duration<double> up = std::chrono::steady_clock::now() - started_;
+  reply.set_uptime_s(up.count());
+  reply.set_server_version("local");
+  return reply;
+}
+
+}  // namespace linetree

@@ -1,0 +1,94 @@
+// linetree render: one view, once or several times over.
+#include <iostream>
+#include <memory>
+
+#include "absl/strings/str_cat.h"
+#include "client/command/command.h"
+#include "client/command/flags.h"
+#include "client/command/frame_report.h"
+#include "client/command/output.h"
+#include "client/command/progress_bar.h"
+#include "client/command/session.h"
+
+namespace linetree {
+namespace {
+
+struct RenderFlags {
+  ConnectionFlags connection;
+  SceneFlags scene;
+  ViewFlags view;
+  SizeFlags size;
+  RenderOptions options;
+  OutputFlags output;
+  int frames = 1;
+};
+
+absl::StatusOr<Frame> RenderOnce(Client& client, const std::string& scene,
+                                 const FrameRequest& request, const OutputFlags& output,
+                                 const std::string& label) {
+  ProgressBar bar(!output.quiet && IsTerminal(), label);
+  return client.RenderFrame(scene, request, "", NeedsLayers(output),
+                            [&bar](double share) { bar.Show(share); });
+}
+
+absl::StatusOr<int> Render(const RenderFlags& flags) {
+  std::vector<std::string> files = flags.output.pictures;
+  if (!flags.output.stats.empty()) files.push_back(flags.output.stats);
+  if (absl::Status status = CheckFolders(files); !status.ok()) return status;
+
+  absl::StatusOr<Session> session = OpenSession(flags.connection, flags.scene);
+  if (!session.ok()) return session.status();
+  const absl::StatusOr<Camera> camera = ResolveCamera(session->scene, flags.view);
+  if (!camera.ok()) return camera.status();
+  const FrameRequest request{*camera, flags.size.width, flags.size.height, flags.options};
+
+  FrameReport report(session->scene.name(), flags.options,
+                     flags.output.quiet ? nullptr : &std::cout);
+  Frame last;
+  for (int i = 1; i <= flags.frames; ++i) {
+    absl::StatusOr<Frame> frame =
+        RenderOnce(*session->client, session->scene.name(), request, flags.output,
+                   absl::StrCat("frame ", i, "/", flags.frames));
+    if (!frame.ok()) return frame.status();
+    report.Add(*frame);
+    last = *std::move(frame);
+  }
+  for (const std::string& picture : flags.output.pictures) {
+    absl::Status status = WritePicture(last, flags.output.layer, picture);
+    if (!status.ok()) return status;
+  }
+  if (!flags.output.stats.empty()) {
+    absl::Status status = WriteJson(report.ToJson(), flags.output.stats);
+    if (!status.ok()) return status;
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void AddRender(CLI::App& parent, Commands& commands) {
+  auto flags = std::make_shared<RenderFlags>();
+  CLI::App* app = parent.add_subcommand("render", "Render a view of a scene");
+  AddConnectionFlags(*app, flags->connection);
+  AddSceneFlags(*app, flags->scene);
+  AddViewFlags(*app, flags->view);
+  AddSizeFlags(*app, flags->size);
+  AddOptionsFlags(*app, flags->options);
+  app->add_option("--frames", flags->frames,
+                  "Render the view so many times; the last frame is written, all are counted")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group("Rendering");
+  AddOutputFlags(*app, flags->output);
+  app->footer(absl::StrCat(
+      "Examples:\n"
+      "  linetree render --local --scene scenes/room.textproto -o room.exr -o room.png\n"
+      "  linetree render --scene room --epsilon 0.05 --frames 2 --stats room.json\n"
+      "  linetree render --scene room --layer verdict -o why.png\n"
+      "  linetree render --scene room --eye 0,1,6 --look-at 0,1,0 --fov 60 -o view.png\n\n",
+      LegendText()));
+  commands.push_back({app, [flags] { return Render(*flags); }});
+}
+
+}  // namespace linetree

@@ -1,0 +1,138 @@
+// linetree stats: what a server holds and has done.
+#include <iostream>
+#include <memory>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/command/command.h"
+#include "client/command/flags.h"
+#include "client/command/session.h"
+#include "client/command/table.h"
+#include "core/io/stats_json.h"
+#include "core/io/wire.h"
+
+namespace linetree {
+namespace {
+
+struct StatsFlags {
+  ConnectionFlags connection;
+  SceneFlags scene;
+  bool json = false;
+  bool objects = false;
+};
+
+using SceneStats = v1::GetStatsReply::SceneStats;
+
+nlohmann::json SceneStatsJson(const SceneStats& scene) {
+  nlohmann::json objects = nlohmann::json::array();
+  for (const auto& object : scene.objects()) {
+    nlohmann::json cells = nlohmann::json::object();
+    for (const auto& [verdict, count] : object.cells()) cells[verdict] = count;
+    objects.push_back(
+        {{"object", object.object()}, {"name", object.name()}, {"cells", std::move(cells)}});
+  }
+  return {{"scene", scene.scene()},
+          {"scene_version", scene.scene_version()},
+          {"frames", scene.frames()},
+          {"ray_batches", scene.ray_batches()},
+          {"totals", StatsJson(FrameStatsFromWire(scene.totals()), 0, 0)},
+          {"cache_bytes", scene.cache_bytes()},
+          {"cells", scene.cells()},
+          {"objects", std::move(objects)}};
+}
+
+nlohmann::json ReplyJson(const v1::GetStatsReply& reply) {
+  nlohmann::json scenes = nlohmann::json::array();
+  for (const SceneStats& scene : reply.scenes()) scenes.push_back(SceneStatsJson(scene));
+  return {{"scenes", std::move(scenes)},
+          {"memory_budget_bytes", reply.memory_budget_bytes()},
+          {"uptime_s", reply.uptime_s()},
+          {"server_version", reply.server_version()}};
+}
+
+std::string SceneTable(const v1::GetStatsReply& reply) {
+  Table table({{"scene"},
+               {"frames", Align::kRight},
+               {"batches", Align::kRight},
+               {"pixels", Align::kRight},
+               {"hit rate", Align::kRight},
+               {"intersect", Align::kRight},
+               {"shade", Align::kRight},
+               {"cells", Align::kRight},
+               {"evicted", Align::kRight},
+               {"cache", Align::kRight}});
+  for (const SceneStats& scene : reply.scenes()) {
+    const FrameStats totals = FrameStatsFromWire(scene.totals());
+    table.AddRow({scene.scene(), Grouped(scene.frames()), Grouped(scene.ray_batches()),
+                  Grouped(totals.pixels), Percent(HitRate(totals)),
+                  Grouped(totals.base.intersect + totals.ip.intersect),
+                  Grouped(totals.base.shade + totals.ip.shade), Grouped(scene.cells()),
+                  Grouped(totals.cells_evicted), Bytes(scene.cache_bytes())});
+  }
+  return table.ToString();
+}
+
+// Cells by verdict, a row for every object that has any.
+std::string ObjectTable(const SceneStats& scene) {
+  std::vector<TableColumn> columns = {{"object"}};
+  for (const auto& name : kVerdictNames) columns.push_back({std::string(name), Align::kRight});
+  Table table(std::move(columns));
+  for (const auto& object : scene.objects()) {
+    std::vector<std::string> row = {absl::StrCat(object.object(), " ", object.name())};
+    for (const auto& name : kVerdictNames) {
+      const auto found = object.cells().find(std::string(name));
+      row.push_back(found == object.cells().end() ? "" : Grouped(found->second));
+    }
+    table.AddRow(std::move(row));
+  }
+  return table.ToString();
+}
+
+absl::StatusOr<v1::GetStatsReply> GetReply(const StatsFlags& flags) {
+  if (flags.scene.scene.empty()) {
+    absl::StatusOr<std::unique_ptr<Client>> client = Connect(flags.connection);
+    if (!client.ok()) return client.status();
+    return (*client)->GetStats("");
+  }
+  absl::StatusOr<Session> session = OpenSession(flags.connection, flags.scene);
+  if (!session.ok()) return session.status();
+  return session->client->GetStats(session->scene.name());
+}
+
+absl::StatusOr<int> Stats(const StatsFlags& flags) {
+  const absl::StatusOr<v1::GetStatsReply> reply = GetReply(flags);
+  if (!reply.ok()) return reply.status();
+  if (flags.json) {
+    std::cout << ReplyJson(*reply).dump(2) << '\n';
+    return kExitOk;
+  }
+  std::cout << absl::StrFormat("linetreed %s, up %.0f s, memory budget %s\n\n",
+                               reply->server_version(), reply->uptime_s(),
+                               Bytes(reply->memory_budget_bytes()))
+            << SceneTable(*reply);
+  if (!flags.objects) return kExitOk;
+  for (const SceneStats& scene : reply->scenes()) {
+    std::cout << "\nCells of " << scene.scene() << " by verdict\n" << ObjectTable(scene);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void AddStats(CLI::App& parent, Commands& commands) {
+  auto flags = std::make_shared<StatsFlags>();
+  CLI::App* app = parent.add_subcommand("stats", "What a server holds and has done");
+  AddConnectionFlags(*app, flags->connection);
+  AddSceneFlags(*app, flags->scene, /*required=*/false);
+  app->add_flag("--objects", flags->objects, "Also the cells of every object by verdict")
+      ->group("Output");
+  app->add_flag("--json", flags->json, "Everything as JSON")->group("Output");
+  app->footer(
+      "Examples:\n"
+      "  linetree stats\n"
+      "  linetree stats --server 10.0.0.7:50051 --scene room --objects\n"
+      "  linetree stats --json");
+  commands.push_back({app, [flags] { return Stats(*flags); }});
+}
+
+}  // namespace linetree
