@@ -66,7 +66,11 @@ std::optional<Location> Find(const pb::TextFormat::ParseInfoTree& root, const pb
     if (field == nullptr) break;
     // A repeated field as a whole stands where its first element does.
     const int index = field->is_repeated() ? std::max(step.index, 0) : -1;
-    const Location location = tree->GetLocation(field, index);
+    Location location = tree->GetLocation(field, index);
+    // Numbers in a list in brackets have one position together.
+    if (location.line < 0 && index > 0 && field->message_type() == nullptr) {
+      location = tree->GetLocation(field, 0);
+    }
     if (location.line >= 0) found = location;
     type = field->message_type();
     tree = type ? tree->GetTreeForNested(field, index) : nullptr;
