@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "core/io/load_scene.h"
 #include "core/io/nff_records.h"
+#include "core/io/nff_source.h"
 #include "core/io/nff_tokens.h"
 #include "core/io/split_polygon.h"
 #include "core/scene/make_shape.h"
@@ -22,38 +22,6 @@
 
 namespace linetree {
 namespace {
-
-// Where each element of the message's repeated fields came from.
-using Positions = absl::flat_hash_map<std::string, std::vector<TextPosition>>;
-
-class NffSource : public SceneSource {
- public:
-  NffSource(v1::Scene message, Positions positions, std::string file)
-      : message_(std::move(message)), positions_(std::move(positions)), file_(std::move(file)) {}
-
-  const v1::Scene& message() const override { return message_; }
-
-  // The record that the element came from: "objects[3].sphere.radius" is at its `s`.
-  std::string Where(std::string_view path) const override {
-    const absl::string_view field_path(path.data(), path.size());
-    const size_t bracket = field_path.find('[');
-    const auto found = positions_.find(field_path.substr(0, bracket));
-    size_t index = 0;
-    if (found == positions_.end() || bracket == absl::string_view::npos ||
-        !absl::SimpleAtoi(field_path.substr(bracket + 1, field_path.find(']') - bracket - 1),
-                          &index) ||
-        index >= found->second.size()) {
-      return file_;
-    }
-    const TextPosition& position = found->second[index];
-    return absl::StrCat(file_, ":", position.line, ":", position.column);
-  }
-
- private:
-  v1::Scene message_;
-  Positions positions_;
-  std::string file_;
-};
 
 using Triangles = std::vector<std::array<int, 3>>;
 
@@ -88,7 +56,7 @@ class NffParser {
       }
     }
     Finish();
-    return std::make_unique<NffSource>(std::move(scene_), std::move(positions_), file_name_);
+    return MakeNffSource(std::move(scene_), std::move(positions_), file_name_);
   }
 
  private:
@@ -322,7 +290,7 @@ class NffParser {
   NffTokens tokens_;
   NffToken record_;  // the keyword of the record that is being read
   v1::Scene scene_;
-  Positions positions_;
+  NffPositions positions_;
   std::vector<NffLight> lights_;
   absl::flat_hash_map<std::array<double, 8>, int> fills_;
   std::string material_;  // name of the current fill
