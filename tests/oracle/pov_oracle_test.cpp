@@ -46,6 +46,8 @@ struct Case {
   int features;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene; }
+
 class PovOracle : public testing::TestWithParam<Case> {};
 
 struct Sample {
