@@ -125,9 +125,16 @@ TEST(Twins, GrazingRaysFromAfarAgree) {
     const size_t corner = static_cast<size_t>(random.Below(4));
     const Vec3d edge = polygon.vertices[(corner + 1) % 4] - polygon.vertices[corner];
     const Vec3d target = polygon.vertices[corner] + edge * random.Unit();
-    const Vec3d origin = target + random.Direction() * random.LogUniform(1e3, 1e6);
-    const Hit a = flat.Intersect(origin, target - origin, {});
-    const Hit b = bvh.Intersect(origin, target - origin, {});
+    Vec3d origin = target + random.Direction() * random.LogUniform(1e3, 1e6);
+    Vec3d direction = target - origin;
+    if (random.Below(2) == 0) {
+      // Along the edge's side of the box, but for less than a rounding of the hit point.
+      const int across = edge.x == 0 ? 0 : 1;
+      origin[across] = target[across];
+      direction[across] = random.Uniform(-1e-15, 1e-15);
+    }
+    const Hit a = flat.Intersect(origin, direction, {});
+    const Hit b = bvh.Intersect(origin, direction, {});
     ASSERT_EQ(a.object, b.object) << "ray " << k;
     ASSERT_EQ(a.t, b.t);
     hits += a.object == square;
