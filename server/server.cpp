@@ -53,6 +53,9 @@ absl::Status Server::Listen(const ServerOptions& options) {
     return absl::UnavailableError(absl::StrCat("--listen: cannot listen on ", options.listen));
   }
   address_ = WithPort(options.listen, port);
+  if (auto* health = grpc_->GetHealthCheckService()) {
+    health->SetServingStatus(v1::RadianceCache::service_full_name(), true);
+  }
   return absl::OkStatus();
 }
 

@@ -1,0 +1,242 @@
+// The client against a server that misbehaves in every way it can think of.
+#include "client/library/client.h"
+
+#include <gmock/gmock.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+
+#include "absl/strings/str_cat.h"
+#include "client/library/status.h"
+#include "core/io/wire_frame.h"
+#include "linetree/v1/service.grpc.pb.h"
+
+namespace linetree {
+namespace {
+
+using testing::HasSubstr;
+
+// Answers with what a test has laid out.
+class ScriptedService : public v1::RadianceCache::Service {
+ public:
+  grpc::Status DescribeScene(grpc::ServerContext* context, const v1::DescribeSceneRequest* request,
+                             v1::SceneInfo* info) override {
+    ++calls;
+    if (hold.valid()) hold.wait();
+    if (calls <= failures) {
+      if (!pushback_ms.empty()) context->AddTrailingMetadata(kRetryPushbackKey, pushback_ms);
+      return {failure, "not now"};
+    }
+    info->set_name(request->scene());
+    return grpc::Status::OK;
+  }
+
+  grpc::Status RenderFrame(grpc::ServerContext*, const v1::RenderFrameRequest*,
+                           grpc::ServerWriter<v1::FrameChunk>* writer) override {
+    for (const auto& chunk : chunks) writer->Write(chunk);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status Fly(grpc::ServerContext*,
+                   grpc::ServerReaderWriter<v1::FlyReply, v1::FlyRequest>* stream) override {
+    v1::FlyRequest request;
+    while (stream->Read(&request)) {
+      v1::FlyReply reply;
+      reply.set_sequence(request.sequence() + sequence_error);
+      for (const auto& chunk : chunks) {
+        *reply.mutable_chunk() = chunk;
+        stream->Write(reply);
+      }
+      if (++flown == frames_before_failure) return {failure, "engine failure"};
+    }
+    return grpc::Status::OK;
+  }
+
+  std::atomic<int> calls = 0;
+  int failures = 0;
+  grpc::StatusCode failure = grpc::StatusCode::UNAVAILABLE;
+  std::string pushback_ms;
+  std::shared_future<void> hold;
+  std::vector<v1::FrameChunk> chunks;
+  uint64_t sequence_error = 0;
+  int flown = 0;
+  int frames_before_failure = -1;
+};
+
+std::vector<v1::FrameChunk> ChunksOf(int width, int height) {
+  Frame frame;
+  frame.width = width;
+  frame.height = height;
+  frame.radiance.resize(static_cast<size_t>(3 * width * height), 0.5f);
+  FrameChunks chunks(frame, false);
+  std::vector<v1::FrameChunk> messages;
+  v1::FrameChunk chunk;
+  while (chunks.Next(&chunk)) messages.push_back(chunk);
+  return messages;
+}
+
+FrameRequest RequestOf(int width, int height) {
+  FrameRequest request;
+  request.width = width;
+  request.height = height;
+  return request;
+}
+
+class ClientTest : public testing::Test {
+ protected:
+  ClientTest() {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(&service_);
+    server_ = builder.BuildAndStart();
+    address_ = absl::StrCat("127.0.0.1:", port);
+  }
+
+  std::unique_ptr<Client> Connect(const ClientOptions& options = {}) {
+    auto client = Client::Connect(address_, options);
+    EXPECT_TRUE(client.ok()) << client.status();
+    return *std::move(client);
+  }
+
+  ScriptedService service_;
+  std::unique_ptr<grpc::Server> server_;
+  std::string address_;
+};
+
+TEST_F(ClientTest, UnavailableIsTriedAgain) {
+  service_.failures = 2;
+  const auto info = Connect()->DescribeScene("room");
+  ASSERT_TRUE(info.ok()) << info.status();
+  EXPECT_EQ(info->name(), "room");
+  EXPECT_EQ(service_.calls, 3);
+}
+
+TEST_F(ClientTest, ButNotForEver) {
+  service_.failures = 100;
+  const auto info = Connect({.max_attempts = 2})->DescribeScene("room");
+  EXPECT_TRUE(absl::IsUnavailable(info.status()));
+  EXPECT_THAT(std::string(info.status().message()), HasSubstr("not now"));
+  EXPECT_EQ(service_.calls, 2);
+}
+
+TEST_F(ClientTest, OneAttemptIsOne) {
+  service_.failures = 1;
+  EXPECT_FALSE(Connect({.max_attempts = 1})->DescribeScene("room").ok());
+  EXPECT_EQ(service_.calls, 1);
+}
+
+TEST_F(ClientTest, NoRoomIsTriedAgainWhenTheServerSaysSo) {
+  service_.failures = 1;
+  service_.failure = grpc::StatusCode::RESOURCE_EXHAUSTED;
+  service_.pushback_ms = "1";
+  EXPECT_TRUE(Connect()->DescribeScene("room").ok());
+  EXPECT_EQ(service_.calls, 2);
+}
+
+TEST_F(ClientTest, ARefusalForGoodIsNotRepeated) {
+  service_.failures = 1;
+  service_.failure = grpc::StatusCode::RESOURCE_EXHAUSTED;
+  service_.pushback_ms = "-1";
+  EXPECT_TRUE(absl::IsResourceExhausted(Connect()->DescribeScene("room").status()));
+  EXPECT_EQ(service_.calls, 1);
+}
+
+TEST_F(ClientTest, OtherErrorsAreNotRepeated) {
+  service_.failures = 1;
+  service_.failure = grpc::StatusCode::NOT_FOUND;
+  EXPECT_TRUE(absl::IsNotFound(Connect()->DescribeScene("room").status()));
+  EXPECT_EQ(service_.calls, 1);
+}
+
+TEST_F(ClientTest, EveryCallHasADeadline) {
+  std::promise<void> release;
+  service_.hold = release.get_future().share();
+  const auto info =
+      Connect({.call_timeout_ms = std::chrono::milliseconds(50)})->DescribeScene("room");
+  release.set_value();
+  EXPECT_EQ(info.status().code(), absl::StatusCode::kDeadlineExceeded);
+}
+
+TEST_F(ClientTest, NobodyThere) {
+  server_->Shutdown();
+  server_.reset();
+  const auto client =
+      Client::Connect(address_, {.connect_timeout_ms = std::chrono::milliseconds(50)});
+  EXPECT_TRUE(absl::IsUnavailable(client.status()));
+  EXPECT_THAT(std::string(client.status().message()), HasSubstr(address_));
+}
+
+TEST_F(ClientTest, AWholeFrameArrives) {
+  service_.chunks = ChunksOf(100, 70);
+  const auto frame = Connect()->RenderFrame("room", RequestOf(100, 70), "", false, nullptr);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
+}
+
+TEST_F(ClientTest, AFrameWithoutItsEndIsDataLoss) {
+  service_.chunks = ChunksOf(100, 70);
+  service_.chunks.pop_back();
+  const auto client = Connect();
+  EXPECT_TRUE(absl::IsDataLoss(
+      client->RenderFrame("room", RequestOf(100, 70), "", false, nullptr).status()));
+  service_.chunks.clear();
+  EXPECT_TRUE(absl::IsDataLoss(
+      client->RenderFrame("room", RequestOf(100, 70), "", false, nullptr).status()));
+}
+
+TEST_F(ClientTest, AFrameOfAnotherSizeIsDataLoss) {
+  service_.chunks = ChunksOf(100, 70);
+  EXPECT_TRUE(absl::IsDataLoss(
+      Connect()->RenderFrame("room", RequestOf(90, 70), "", false, nullptr).status()));
+  EXPECT_TRUE(absl::IsDataLoss(
+      Connect()->Fly("room", {RequestOf(101, 70)}, false, [](size_t, const Frame&) {})));
+}
+
+TEST_F(ClientTest, SizesThatNoFrameHasAreNotSent) {
+  for (const auto& [width, height] : {std::pair(0, 5), {5, -1}}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(
+        Connect()->RenderFrame("room", RequestOf(width, height), "", false, nullptr).status()));
+    EXPECT_TRUE(absl::IsInvalidArgument(
+        Connect()->Fly("room", {RequestOf(width, height)}, false, [](size_t, const Frame&) {})));
+  }
+}
+
+TEST_F(ClientTest, AFlightDeliversInOrder) {
+  service_.chunks = ChunksOf(8, 8);
+  size_t expected = 0;
+  const auto status =
+      Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), false,
+                     [&](size_t index, const Frame&) { EXPECT_EQ(index, expected++); });
+  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_EQ(expected, 50u);
+}
+
+TEST_F(ClientTest, AFlightOfNoFramesIsFine) {
+  EXPECT_TRUE(Connect()->Fly("room", {}, false, [](size_t, const Frame&) { FAIL(); }).ok());
+}
+
+TEST_F(ClientTest, AFlightThatFailsHasTheServersWords) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.frames_before_failure = 3;
+  service_.failure = grpc::StatusCode::NOT_FOUND;
+  int frames = 0;
+  const auto status = Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), false,
+                                     [&](size_t, const Frame&) { ++frames; });
+  EXPECT_TRUE(absl::IsNotFound(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("engine failure"));
+  EXPECT_EQ(frames, 3);
+}
+
+TEST_F(ClientTest, FramesOutOfOrderAreDataLoss) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.sequence_error = 1;
+  EXPECT_TRUE(absl::IsDataLoss(
+      Connect()->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) { FAIL(); })));
+}
+
+}  // namespace
+}  // namespace linetree

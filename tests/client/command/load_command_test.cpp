@@ -1,0 +1,57 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/client/command/program.h"
+
+namespace linetree {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::string> Load(std::vector<std::string> more) {
+  more.insert(more.begin(),
+              {"load", "--local", "--scene", SourceFile("scenes/face.textproto"), "--path",
+               SourceFile("scenes/paths/face_walk.textproto"), "--width", "16", "--height", "16"});
+  return more;
+}
+
+TEST(LoadCommand, CountsEveryFrameOfEveryClient) {
+  TempDir dir;
+  const Finished run = RunLinetree(Load(
+      {"--clients", "3", "--frames", "4", "--stats", dir.File("l.json"), "-o", dir.File("l.svg")}));
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("clients     3"));
+  EXPECT_THAT(run.out, HasSubstr("latency ms  p50"));
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(dir.File("l.json")));
+  EXPECT_EQ(json["frames"], 12);
+  EXPECT_EQ(json["clients"], 3);
+  EXPECT_GT(json["hit_rate"], 0.0);
+  const nlohmann::json& latency = json["latency_ms"];
+  EXPECT_LE(latency["p50"], latency["p90"]);
+  EXPECT_LE(latency["p90"], latency["p99"]);
+  EXPECT_LE(latency["p99"], latency["max"]);
+  std::string svg;
+  std::getline(std::ifstream(dir.File("l.svg")), svg);
+  EXPECT_THAT(svg, HasSubstr("<svg"));
+}
+
+TEST(LoadCommand, ADurationEndsIt) {
+  TempDir dir;
+  ASSERT_EQ(RunLinetree(
+                Load({"--clients", "2", "--duration", "0.1", "-q", "--stats", dir.File("l.json")}))
+                .exit_status,
+            0);
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(dir.File("l.json")));
+  EXPECT_GE(json["frames"], 2);
+}
+
+TEST(LoadCommand, AFailingFrameEndsIt) {
+  const Finished run = RunLinetree(Load({"--width", "1000000"}));
+  EXPECT_NE(run.exit_status, 0);
+}
+
+}  // namespace
+}  // namespace linetree

@@ -1,0 +1,138 @@
+// Every command against a server in a process of its own; answers are those of --local.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/io/exr.h"
+#include "tests/client/command/program.h"
+
+namespace linetree {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ServerCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    server_ = new ServerProcess({"--scene", "gap=" + SourceFile("scenes/gap.textproto")});
+  }
+  static void TearDownTestSuite() {
+    delete server_;
+    server_ = nullptr;
+  }
+
+  static Finished Run(std::vector<std::string> arguments, const std::string& in = "") {
+    arguments.insert(arguments.end(), {"--server", server_->address()});
+    return RunLinetree(arguments, in);
+  }
+
+  static ServerProcess* server_;
+  TempDir dir_;
+};
+ServerProcess* ServerCommand::server_ = nullptr;
+
+TEST_F(ServerCommand, ClassicalFramesAreThoseOfLocal) {
+  const std::vector<std::string> render = {"render", "--mode",   "classical", "--width",
+                                           "70",     "--height", "50",        "-q"};
+  std::vector<std::string> remote = render;
+  remote.insert(remote.end(), {"--scene", "gap", "-o", dir_.File("remote.exr")});
+  std::vector<std::string> local = render;
+  local.insert(local.end(), {"--local", "--scene", SourceFile("scenes/gap.textproto"), "-o",
+                             dir_.File("local.exr")});
+  const Finished run = Run(remote);
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  ASSERT_EQ(RunLinetree(local).exit_status, 0);
+  const auto a = ReadExr(dir_.File("remote.exr"));
+  const auto b = ReadExr(dir_.File("local.exr"));
+  ASSERT_EQ(a.status(), absl::OkStatus());
+  EXPECT_EQ(a->radiance, b->radiance);
+  EXPECT_EQ(a->object, b->object);
+  EXPECT_EQ(a->source, b->source);
+  EXPECT_EQ(a->verdict, b->verdict);
+  EXPECT_EQ(a->depth, b->depth);
+  EXPECT_EQ(a->camera, b->camera);
+  EXPECT_EQ(a->white, b->white);
+  EXPECT_EQ(a->scene_version, b->scene_version);
+}
+
+TEST_F(ServerCommand, AFileIsLoadedUnderItsName) {
+  const std::string peak = SourceFile("scenes/peak.textproto");
+  Finished run = Run({"render", "--scene", peak, "--width", "16", "--height", "16"});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  run = Run({"render", "--scene", "peak", "--width", "16", "--height", "16"});
+  EXPECT_EQ(run.exit_status, 0) << run.err;
+  // Another scene of the same name only on request.
+  std::filesystem::copy(SourceFile("scenes/gap.textproto"), dir_.File("peak.textproto"));
+  run = Run({"render", "--scene", dir_.File("peak.textproto"), "--width", "16", "--height", "16"});
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("--replace"));
+  run = Run({"render", "--replace", "--scene", dir_.File("peak.textproto"), "--width", "16",
+             "--height", "16"});
+  EXPECT_EQ(run.exit_status, 0) << run.err;
+}
+
+TEST_F(ServerCommand, FliesOverOneStream) {
+  const Finished run =
+      Run({"fly", "--scene", SourceFile("scenes/face.textproto"), "--path",
+           SourceFile("scenes/paths/face_walk.textproto"), "--frames", "4", "--width", "32",
+           "--height", "32", "-o", dir_.File("f_%d.exr"), "--stats", dir_.File("s.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(dir_.File("f_4.exr")));
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir_.File("s.json")))["frames"].size(), 4u);
+}
+
+TEST_F(ServerCommand, Rays) {
+  const Finished run = Run({"rays", "--scene", "gap", "--input", "-"}, "0 5 0 0 -1 0\n");
+  EXPECT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(" 0 5\n"));  // object 0, the mirror, at a distance of 5
+}
+
+TEST_F(ServerCommand, Load) {
+  const Finished run =
+      Run({"load", "--scene", "gap", "--path", SourceFile("scenes/paths/face_walk.textproto"),
+           "--clients", "3", "--frames", "2", "--width", "16", "--height", "16", "--stats",
+           dir_.File("l.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir_.File("l.json")))["frames"], 6);
+}
+
+TEST_F(ServerCommand, StatsShowWhatWasDone) {
+  ASSERT_EQ(Run({"render", "--scene", "gap", "--width", "16", "--height", "16"}).exit_status, 0);
+  Finished run = Run({"stats", "--objects"});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("gap "));
+  EXPECT_THAT(run.out, HasSubstr("Cells of gap by verdict"));
+  run = Run({"stats", "--scene", "gap", "--json"});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["scenes"].size(), 1u);
+  EXPECT_EQ(json["scenes"][0]["scene"], "gap");
+  EXPECT_GE(json["scenes"][0]["frames"], 1);
+  EXPECT_GT(json["memory_budget_bytes"], 0);
+}
+
+TEST_F(ServerCommand, BenchErrorLeavesNothingBehind) {
+  const Finished run =
+      Run({"bench", "error", "--scene", SourceFile("scenes/gap.textproto"), "--epsilons", "0.25",
+           "--repeat", "1", "--width", "16", "--height", "16"});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(Run({"stats", "--json"}).out);
+  for (const auto& scene : json["scenes"]) {
+    EXPECT_THAT(scene["scene"].get<std::string>(), ::testing::Not(HasSubstr("bench")));
+  }
+}
+
+TEST_F(ServerCommand, RefusalsAreOneLine) {
+  const Finished unknown = Run({"render", "--scene", "nowhere"});
+  EXPECT_EQ(unknown.exit_status, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("nowhere"));
+  const Finished huge = Run({"render", "--scene", "gap", "--width", "1000000"});
+  EXPECT_EQ(huge.exit_status, 1);
+  EXPECT_THAT(huge.err, HasSubstr("width"));
+  EXPECT_EQ(std::count(huge.err.begin(), huge.err.end(), '\n'), 1) << huge.err;
+}
+
+}  // namespace
+}  // namespace linetree

@@ -1,0 +1,82 @@
+#include "server/options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace linetree {
+namespace {
+
+using testing::StartsWith;
+
+TEST(ServerOptionsTest, DefaultsAreValidAndStayOnThisMachine) {
+  EXPECT_TRUE(ValidateServerOptions({}).ok());
+  EXPECT_TRUE(IsLoopback(ServerOptions().listen));
+}
+
+TEST(ServerOptionsTest, LoopbackOrNot) {
+  for (const char* listen : {"127.0.0.1:1", "localhost:1", "[::1]:1", "unix:socket"}) {
+    EXPECT_TRUE(IsLoopback(listen)) << listen;
+  }
+  for (const char* listen : {"0.0.0.0:1", "[::]:1", "10.1.2.3:1", "host:1"}) {
+    EXPECT_FALSE(IsLoopback(listen)) << listen;
+  }
+}
+
+struct BadOption {
+  const char* flag;
+  void (*spoil)(ServerOptions& options);
+};
+
+class BadOptions : public testing::TestWithParam<BadOption> {};
+
+TEST_P(BadOptions, AreRefusedByTheNameOfTheirFlag) {
+  ServerOptions options;
+  GetParam().spoil(options);
+  const auto status = ValidateServerOptions(options);
+  EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  EXPECT_THAT(std::string(status.message()), StartsWith(GetParam().flag));
+}
+
+using Options = ServerOptions;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const BadOption kBadOptions[] = {
+    {"--scene",
+     [](Options& o) {
+       o.scenes = {{"", "a.nff"}};
+     }},
+    {"--scene",
+     [](Options& o) {
+       o.scenes = {{"a b", "a.nff"}};
+     }},
+    {"--scene",
+     [](Options& o) {
+       o.scenes = {{"a", ""}};
+     }},
+    {"--scene",
+     [](Options& o) {
+       o.scenes = {{"a", "a.nff"}, {"a", "b.nff"}};
+     }},
+    {"--listen", [](Options& o) { o.listen.clear(); }},
+    {"--threads", [](Options& o) { o.threads = -1; }},
+    {"--threads", [](Options& o) { o.threads = 100'000; }},
+    {"--render-slots", [](Options& o) { o.render_slots = 0; }},
+    {"--memory", [](Options& o) { o.memory_bytes = 1000; }},
+    {"--epsilon", [](Options& o) { o.defaults.max_relative_error = kNan; }},
+    {"--max-depth", [](Options& o) { o.defaults.limits.max_depth = 17; }},
+    {"--min-weight", [](Options& o) { o.defaults.limits.min_weight = -1; }},
+    {"--drain-timeout-ms", [](Options& o) { o.drain_timeout_ms = std::chrono::milliseconds(-1); }},
+};
+INSTANTIATE_TEST_SUITE_P(All, BadOptions, testing::ValuesIn(kBadOptions));
+
+TEST(ServerOptionsTest, SceneFlagsAreNameAndFile) {
+  const auto scene = ParseSceneFlag("room=scenes/a=b.nff");
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_EQ(scene->name, "room");
+  EXPECT_EQ(scene->path, "scenes/a=b.nff");
+  EXPECT_TRUE(absl::IsInvalidArgument(ParseSceneFlag("room").status()));
+}
+
+}  // namespace
+}  // namespace linetree
