@@ -208,7 +208,8 @@ TEST(WireTest, RaysLoseNothing) {
 }
 
 TEST(WireTest, SceneNames) {
-  for (const std::string good : {"a", "room_2.nff", "A-b", std::string(128, 'x').c_str()}) {
+  for (const std::string& good :
+       {std::string("a"), std::string("room_2.nff"), std::string("A-b"), std::string(128, 'x')}) {
     EXPECT_TRUE(ValidateSceneName(good, "scene").ok()) << good;
   }
   for (const std::string& bad :
@@ -235,8 +236,8 @@ TEST(WireTest, SceneInfoCountsAndBounds) {
   EXPECT_EQ(info.lights(), 2u);
   EXPECT_EQ(info.materials(), 4u);
   EXPECT_EQ(info.cameras_size(), 1);
-  EXPECT_EQ(info.bounds_min().x(), -6);
-  EXPECT_EQ(info.bounds_max().z(), 4);
+  EXPECT_EQ(info.bounds_min().x(), scene->WorldBounds().min.x);
+  EXPECT_EQ(info.bounds_max().z(), scene->WorldBounds().max.z);
   EXPECT_EQ(info.cache_bytes(), 77u);
 }
 
