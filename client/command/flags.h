@@ -54,7 +54,7 @@ void AddLimitsFlags(CLI::App& app, PathLimits& limits);
 struct OutputFlags {
   std::vector<std::string> pictures;  // .exr or .png
   Layer layer = Layer::kBeauty;       // of .png
-  std::string stats;                  // JSON
+  std::string stats{};                // JSON
   bool quiet = false;
 };
 void AddOutputFlags(CLI::App& app, OutputFlags& flags);

@@ -66,7 +66,7 @@ absl::StatusOr<int> Fly(const FlyFlags& flags) {
 
   const bool quiet = flags.output.quiet;
   FrameReport report(session->scene.name(), flags.options, quiet ? nullptr : &std::cout);
-  absl::Status written;  // the first failure; the flight ends, but frames under way still arrive
+  absl::Status written;  // the first failure; frames that arrive after it are not written
   absl::Status flown = session->client->Fly(
       session->scene.name(), *requests, NeedsLayers(flags.output), [&](size_t index, Frame frame) {
         report.Add(frame);

@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -157,6 +158,20 @@ void TakeAttributes(const Imf::Header& header, Frame& frame) {
   TakeAttribute<Imf::StringAttribute>(header, "scene_version", frame.scene_version);
 }
 
+// What error figures divide by and compare with must be numbers that they can use.
+absl::Status CheckAttributes(const Frame& frame) {
+  if (!std::isfinite(frame.white) || !(frame.white > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("attribute white: expected a positive number, found ", frame.white));
+  }
+  if (!std::isfinite(frame.max_relative_error) || !(frame.max_relative_error >= 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("attribute max_relative_error: expected a number of at least 0, found ",
+                     frame.max_relative_error));
+  }
+  return absl::OkStatus();
+}
+
 // An unknown number (a file from elsewhere) is refused rather than cast.
 absl::Status UnpackLayers(const UintLayers& layers, Frame& frame) {
   for (size_t i = 0; i < layers.object.size(); ++i) {
@@ -211,6 +226,7 @@ absl::StatusOr<Frame> DecodeExr(const std::string& path) {
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
   TakeAttributes(header, frame);
+  if (absl::Status status = CheckAttributes(frame); !status.ok()) return status;
   if (absl::Status status = UnpackLayers(layers, frame); !status.ok()) return status;
   return frame;
 }

@@ -97,6 +97,19 @@ TEST(Exr, WhatIsNoPictureIsNamed) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("text.exr: expected an OpenEXR file"));
 }
 
+TEST(Exr, AttributesThatErrorFiguresCannotUseAreRefused) {
+  TempDir dir;
+  Frame frame = MakeFrame(2, 2);
+  frame.white = 0;
+  ASSERT_EQ(WriteExr(frame, dir.File("a.exr")), absl::OkStatus());
+  EXPECT_THAT(std::string(ReadExr(dir.File("a.exr")).status().message()),
+              HasSubstr("a.exr: attribute white: expected a positive number, found 0"));
+  frame.white = 1;
+  frame.max_relative_error = -1;
+  ASSERT_EQ(WriteExr(frame, dir.File("a.exr")), absl::OkStatus());
+  EXPECT_EQ(ReadExr(dir.File("a.exr")).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
 TEST(Exr, HalfAFileIsRefused) {
   TempDir dir;
   ASSERT_EQ(WriteExr(MakeFrame(64, 64), dir.File("a.exr")), absl::OkStatus());

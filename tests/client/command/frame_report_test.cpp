@@ -33,7 +33,9 @@ TEST(FrameReport, ALineForEveryFrame) {
 }
 
 TEST(FrameReport, JsonOfOneFrameHasItsCountersOnTop) {
-  FrameReport report("room", {.max_relative_error = 0.25}, nullptr);
+  RenderOptions options;
+  options.max_relative_error = 0.25;
+  FrameReport report("room", options, nullptr);
   report.Add(CountedFrame(3, 1));
   const nlohmann::json json = report.ToJson();
   EXPECT_EQ(json["scene"], "room");
@@ -46,7 +48,9 @@ TEST(FrameReport, JsonOfOneFrameHasItsCountersOnTop) {
 }
 
 TEST(FrameReport, JsonOfSeveralFramesListsThem) {
-  FrameReport report("room", {.mode = Mode::kClassical}, nullptr);
+  RenderOptions options;
+  options.mode = Mode::kClassical;
+  FrameReport report("room", options, nullptr);
   report.Add(CountedFrame(3, 1));
   report.Add(CountedFrame(2, 2));
   const nlohmann::json json = report.ToJson();

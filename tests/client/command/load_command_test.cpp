@@ -14,14 +14,14 @@ using ::testing::HasSubstr;
 std::vector<std::string> Load(std::vector<std::string> more) {
   more.insert(more.begin(),
               {"load", "--local", "--scene", SourceFile("scenes/face.textproto"), "--path",
-               SourceFile("scenes/paths/face_walk.textproto"), "--width", "16", "--height", "16"});
+               SourceFile("scenes/paths/face_walk.textproto"), "--height", "24", "--epsilon", "1"});
   return more;
 }
 
 TEST(LoadCommand, CountsEveryFrameOfEveryClient) {
   TempDir dir;
-  const Finished run = RunLinetree(Load(
-      {"--clients", "3", "--frames", "4", "--stats", dir.File("l.json"), "-o", dir.File("l.svg")}));
+  const Finished run = RunLinetree(Load({"--width", "24", "--clients", "3", "--frames", "4",
+                                         "--stats", dir.File("l.json"), "-o", dir.File("l.svg")}));
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("clients     3"));
   EXPECT_THAT(run.out, HasSubstr("latency ms  p50"));
@@ -40,8 +40,8 @@ TEST(LoadCommand, CountsEveryFrameOfEveryClient) {
 
 TEST(LoadCommand, ADurationEndsIt) {
   TempDir dir;
-  ASSERT_EQ(RunLinetree(
-                Load({"--clients", "2", "--duration", "0.1", "-q", "--stats", dir.File("l.json")}))
+  ASSERT_EQ(RunLinetree(Load({"--width", "24", "--clients", "2", "--duration", "0.1", "-q",
+                              "--stats", dir.File("l.json")}))
                 .exit_status,
             0);
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(dir.File("l.json")));
@@ -50,7 +50,8 @@ TEST(LoadCommand, ADurationEndsIt) {
 
 TEST(LoadCommand, AFailingFrameEndsIt) {
   const Finished run = RunLinetree(Load({"--width", "1000000"}));
-  EXPECT_NE(run.exit_status, 0);
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("width"));
 }
 
 }  // namespace

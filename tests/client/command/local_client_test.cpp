@@ -36,7 +36,8 @@ TEST_F(LocalClientTest, LayersComeWhenAskedFor) {
 }
 
 TEST_F(LocalClientTest, CamerasByName) {
-  const auto frame = client_.RenderFrame("gap", {.width = 8, .height = 8}, "front", false, nullptr);
+  const FrameRequest unnamed{{}, 8, 8, {}};
+  const auto frame = client_.RenderFrame("gap", unnamed, "front", false, nullptr);
   ASSERT_EQ(frame.status(), absl::OkStatus());
   EXPECT_EQ(frame->camera.name, "front");
   EXPECT_EQ(client_.RenderFrame("gap", request_, "back", false, nullptr).status().code(),

@@ -142,7 +142,9 @@ TEST(RenderCommand, BadInputIsNamed) {
   ExpectFailure(Render("gap.textproto", {"--camera", "top"}), "no camera 'top'");
   ExpectFailure(Render("gap.textproto", {"--up", "0,0,0"}), "camera.up");
   ExpectFailure(Render("gap.textproto", {"--fov", "180"}), "camera.fov_deg");
-  ExpectFailure(Render("gap.textproto", {"--width", "1000000"}), "width");
+  ExpectFailure(
+      {"render", "--local", "--scene", SourceFile("scenes/gap.textproto"), "--width", "1000000"},
+      "width");
 }
 
 TEST(RenderCommand, OutputThatCannotBeWrittenIsNamed) {

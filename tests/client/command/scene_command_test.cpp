@@ -35,15 +35,15 @@ TEST(SceneCommand, CheckGoesOnAfterABadFile) {
   TempDir dir;
   std::ofstream(dir.File("bad.nff")) << "v\nfrom 0 0 nowhere\n";
   const Finished run =
-      RunLinetree({"scene", "check", dir.File("bad.nff"), SourceFile("scenes/spd/balls_1.nff")});
+      RunLinetree({"scene", "check", dir.File("bad.nff"), SourceFile("scenes/spd/balls_2.nff")});
   EXPECT_EQ(run.exit_status, 1);
   EXPECT_THAT(run.err, StartsWith("linetree: " + dir.File("bad.nff") + ":2:"));
-  EXPECT_THAT(run.out, HasSubstr("balls_1.nff: OK"));
+  EXPECT_THAT(run.out, HasSubstr("balls_2.nff: OK"));
 }
 
 TEST(SceneCommand, ConvertedNffIsTheSameScene) {
   TempDir dir;
-  const std::string nff = SourceFile("scenes/spd/balls_1.nff");
+  const std::string nff = SourceFile("scenes/spd/balls_2.nff");
   const Finished run = RunLinetree({"scene", "convert", nff, "-o", dir.File("b.textproto")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
   const auto before = LoadSceneFile(nff);
