@@ -6,7 +6,9 @@ namespace linetree {
 void AddBench(CLI::App& parent, Commands& commands) {
   CLI::App* app = parent.add_subcommand("bench", "Measurements of accuracy and speed");
   app->require_subcommand(1);
+  AddBenchAccuracy(*app, commands);
   AddBenchError(*app, commands);
+  AddBenchPaper(*app, commands);
 }
 
 }  // namespace linetree

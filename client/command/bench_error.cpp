@@ -38,9 +38,13 @@ absl::StatusOr<std::vector<ErrorSweepRow>> Sweep(const BenchErrorFlags& flags) {
   if (!camera.ok()) return camera.status();
   const absl::StatusOr<std::unique_ptr<Client>> client = Connect(flags.connection);
   if (!client.ok()) return client.status();
-  ErrorSweepOptions options{
-      {*camera, flags.size.width, flags.size.height, {}}, flags.epsilons, flags.repeats};
+  ErrorSweepOptions options;
+  options.request.camera = *camera;
+  options.request.width = flags.size.width;
+  options.request.height = flags.size.height;
   options.request.options.limits = flags.limits;
+  options.epsilons = flags.epsilons;
+  options.repeats = flags.repeats;
   ProgressBar bar(!flags.quiet && IsTerminal(), "bench error");
   // A name of its own: what others have on the server stays warm.
   return SweepErrors(**client, *file, absl::StrCat("bench-", getpid(), "-", file->name), options,

@@ -37,7 +37,9 @@ void AddCompare(CLI::App& parent, Commands& commands);
 void AddLoad(CLI::App& parent, Commands& commands);
 // `bench`: one command for each measurement.
 void AddBench(CLI::App& parent, Commands& commands);
+void AddBenchAccuracy(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
+void AddBenchPaper(CLI::App& bench, Commands& commands);
 
 // Writes "linetree: message" as one line to standard error and returns `exit_status`.
 int Report(const absl::Status& status, int exit_status = kExitFailure);

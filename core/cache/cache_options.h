@@ -11,10 +11,10 @@ struct CacheOptions {
   // For cells, interpolants and corner samples together. 0 turns the cache off.
   uint64_t memory_bytes = uint64_t{256} << 20;
   // Deepest cells, in [0, kMaxCellDepth]: edge 2^-max_cell_depth of an object's face.
-  int max_cell_depth = 8;
+  int max_cell_depth = 10;
   // A cell is built only for at least this many rays of one batch. A cell costs up to sixteen
   // corner samples, of which neighbours share most.
-  uint32_t min_cell_rays = 16;
+  uint32_t min_cell_rays = 8;
 };
 
 // Corner samples only make building cheaper, so they get at most this share of the memory.

@@ -12,8 +12,9 @@ namespace {
 // nearly coincide would spend all subdivision on directions.
 constexpr double kMinThickness = 0.25;
 
-// Coordinates may leave [0, 1] by rounding alone; they are clamped. Beyond this the line misses.
-constexpr double kCoordSlack = 1e-9;
+// Coordinates may leave [0, 1] by rounding and by a planar object's inset; they are clamped. Beyond
+// this the line misses.
+constexpr double kCoordSlack = 0x1p-32;
 
 using Axes = std::array<Vec3d, 3>;
 
@@ -149,9 +150,11 @@ ObjectChart::ObjectChart(const Object& object)
   half_ = (extent.max - extent.min) * 0.5;
   const double longest = std::max({half_.x, half_.y, half_.z});
   for (int i = 0; i < 3; ++i) {
-    half_[i] += Length(origin) * kBoundsPad;
-    if (!planar_) half_[i] = std::max(half_[i], kMinThickness * longest);
-    if (planar_ && i < 2) half_[i] = std::max(half_[i], kBoundsPad * longest);
+    if (planar_) {
+      half_[i] -= kRimInset * longest;
+    } else {
+      half_[i] = std::max(half_[i] + Length(origin) * kBoundsPad, kMinThickness * longest);
+    }
   }
 }
 

@@ -21,7 +21,10 @@
 //       a = (y_0 / h_0 + 1) / 2, b = (y_1 / h_1 + 1) / 2,
 //       c = (d_i / |d_k| + 1) / 2, d = (d_j / |d_k| + 1) / 2; the pair holds the sign of d_k.
 //     Slopes lie in [-1, 1] by the choice of k, and the crossing lies in the shape's rectangle
-//     whenever the ray meets the shape. Rays parallel to the plane have no coordinates.
+//     whenever the ray meets the shape. The rectangle is inset by kRimInset of its longer side, so
+//     that the corners of cells at the rim, which lie on its border, meet the shape in spite of
+//     rounding; what hits outside takes the coordinates of the border. Rays parallel to the plane
+//     have no coordinates.
 //
 // Accuracy: LineOf(CoordsOf(ray)) is the ray's line up to rounding: at the object its points move
 // by at most kLineRounding times the largest of the expanded half sizes plus |c - origin|.
@@ -36,6 +39,10 @@
 namespace linetree {
 
 inline constexpr int kFacePairs = 6;
+
+// Far above the rounding of a hit point within a thousand sizes of the origin, far below what
+// a radiance in float can show.
+inline constexpr double kRimInset = 0x1p-40;
 
 // See "Accuracy" above: eight roundings of 2^-53, one for every operation in the longest chain
 // between a ray and its reconstruction (to the chart, to the plane, scaled, and back).

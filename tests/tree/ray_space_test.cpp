@@ -57,8 +57,10 @@ void CheckLines(double size, const Vec3d& at, uint64_t seed) {
     ++hits;
     const Ray line = chart.LineOf(chart.PairOf(direction), *coords);
     ASSERT_GT(Dot(line.direction, direction), 0);
-    const double scale = Length(object.bounds.Extent()) * 3 + Length(hit.point);
-    const double error = DistanceToLine(hit.point, line) / scale;
+    const double size = Length(object.bounds.Extent());
+    const double inset = IsPlanar(object.shape) ? 2 * kRimInset * size : 0;
+    const double error =
+        std::max(0.0, DistanceToLine(hit.point, line) - inset) / (3 * size + Length(hit.point));
     largest = std::max(largest, error);
     ASSERT_LE(error, kLineRounding) << "seed " << seed << ", case " << i << ", object " << k;
   }
@@ -97,6 +99,27 @@ TEST(ObjectChartTest, TheExpansionIsAttained) {
   const auto coords = chart.CoordsOf(pair, {1, -1, 0}, direction);
   ASSERT_TRUE(coords);
   EXPECT_NEAR((*coords)[0], 0, 1e-15);
+}
+
+// Cells at the rim of a rectangle are as good as those inside.
+TEST(ObjectChartTest, CornersOnARectanglesBorderMeetIt) {
+  test::Random random(16);
+  Scene scene;
+  scene.materials.resize(1);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d at = random.InBox({-50, -50, -50}, {50, 50, 50});
+    const Vec3d u = random.Direction() * random.LogUniform(0.1, 10);
+    const Vec3d v = Cross(u, random.Direction());
+    if (Length(v) < 0.1) continue;
+    scene.objects = {test::ObjectOf(test::Polygon({at, at + u, at + u + v, at + v}))};
+    const Tracer tracer(scene);
+    const ObjectChart chart(scene.objects[0]);
+    for (int corner = 0; corner < 4; ++corner) {
+      const Ray line = chart.LineOf(
+          4, {static_cast<double>(corner & 1), static_cast<double>(corner / 2), 0.3, 0.8});
+      ASSERT_TRUE(tracer.IntersectObjectLine(0, line.origin, line.direction).IsHit()) << i;
+    }
+  }
 }
 
 TEST(ObjectChartTest, RaysAlongAPlanarObjectHaveNoCoordinates) {
