@@ -35,8 +35,8 @@ Verdict CompareLights(const RayTree& a, const RayTree& b) {
   return Verdict::kCertified;
 }
 
-// (max - min) / max(min, floor), the largest of three channels.
-double SpreadOf(const Corners& corners, double floor) {
+// (max + rise - min) / max(min, floor), the largest of three channels.
+double SpreadOf(const Corners& corners, const Rgb& rise, double floor) {
   double spread = 0;
   for (int channel = 0; channel < 3; ++channel) {
     double lo = Box3::kInf, hi = -Box3::kInf;
@@ -44,9 +44,13 @@ double SpreadOf(const Corners& corners, double floor) {
       lo = std::min(lo, corner->tree.radiance[channel]);
       hi = std::max(hi, corner->tree.radiance[channel]);
     }
-    spread = std::max(spread, (hi - lo) / std::max(lo, floor));
+    spread = std::max(spread, (hi + rise[channel] - lo) / std::max(lo, floor));
   }
   return spread + kStorageRounding;
+}
+
+Vec3d ToLight(const Light& light, const Vec3d& point) {
+  return light.kind == LightKind::kPoint ? Normalized(light.position - point) : light.to_light;
 }
 
 }  // namespace
@@ -72,7 +76,12 @@ Judgement PaperJudge::Decide(const Corners& corners) const {
   if (judgement.verdict == Verdict::kCertified) judgement.verdict = FindBlocker(corners);
   if (judgement.verdict == Verdict::kCertified) judgement.verdict = FindPeak(corners);
   if (judgement.verdict != Verdict::kCertified) return judgement;
-  judgement.spread = SpreadOf(corners, RadianceFloor(scene_));
+  const std::optional<Rgb> rise = DiffuseRise(corners);
+  if (!rise) {
+    judgement.verdict = Verdict::kPeak;
+    return judgement;
+  }
+  judgement.spread = SpreadOf(corners, *rise, RadianceFloor(scene_));
   for (size_t m = 0; m < kCellCorners; ++m) {
     const Rgb& radiance = corners[m]->tree.radiance;
     for (int c = 0; c < 3; ++c) {
@@ -209,9 +218,7 @@ Verdict PaperJudge::FindPeak(const Corners& corners) const {
       const Light& light = scene_.lights[static_cast<size_t>(l)];
       for (size_t m = 0; m < kCellCorners; ++m) {
         const RayTreeNode& at = Node(corners, m, n);
-        const Vec3d to_light = light.kind == LightKind::kPoint
-                                   ? Normalized(light.position - at.point)
-                                   : light.to_light;
+        const Vec3d to_light = ToLight(light, at.point);
         views[m] = -at.direction;
         mirrored[m] = at.normal * (2 * Dot(at.normal, to_light)) - to_light;
       }
@@ -219,6 +226,47 @@ Verdict PaperJudge::FindPeak(const Corners& corners) const {
     }
   }
   return Verdict::kCertified;
+}
+
+Rgb PaperJudge::WeightOf(const RayTree& tree, size_t n) const {
+  Rgb weight{1, 1, 1};
+  for (const RayTreeNode* node = &tree.nodes[n]; node->parent >= 0;) {
+    const RayTreeNode& parent = tree.nodes[static_cast<size_t>(node->parent)];
+    const Material& material = scene_.MaterialOf(parent.object);
+    if (node->branch == Branch::kTransmitted) weight = weight * material.transmit;
+    if (node->branch == Branch::kReflected && !parent.total_reflection) {
+      weight = weight * material.reflect;
+    }
+    node = &parent;
+  }
+  return weight;
+}
+
+// The paper names this extremum, "(or N.L)", and tests for the highlight's alone; extremal values
+// around the foot of a nearby light then agree while the middle is brighter.
+std::optional<Rgb> PaperJudge::DiffuseRise(const Corners& corners) const {
+  const RayTree& first = corners[0]->tree;
+  Rgb rise;
+  std::array<Vec3d, kCellCorners> normals, to_lights;
+  for (size_t n = 0; n < first.nodes.size(); ++n) {
+    const RayTreeNode& node = first.nodes[n];
+    if (node.kind != NodeKind::kSurface) continue;
+    const Rgb& diffuse = scene_.MaterialOf(node.object).diffuse;
+    for (int l = 0; l < static_cast<int>(scene_.lights.size()) && !IsBlack(diffuse); ++l) {
+      if (Term(first, node, l).state != LightState::kLit) continue;
+      const Light& light = scene_.lights[static_cast<size_t>(l)];
+      double largest = 0;
+      for (size_t m = 0; m < kCellCorners; ++m) {
+        normals[m] = Node(corners, m, n).normal;
+        to_lights[m] = ToLight(light, Node(corners, m, n).point);
+        largest = std::max(largest, Dot(normals[m], to_lights[m]));
+      }
+      if (StrictlySeparable(normals, to_lights)) continue;
+      if (light.fade_distance > 0) return std::nullopt;
+      rise += WeightOf(first, n) * diffuse * Scaled(light.irradiance, std::max(0.0, 1 - largest));
+    }
+  }
+  return rise;
 }
 
 }  // namespace linetree

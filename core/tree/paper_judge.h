@@ -6,6 +6,8 @@
 // objects and several times as often where surfaces abut (DESIGN: two kinds of tree).
 #pragma once
 
+#include <optional>
+
 #include "core/tree/judge.h"
 
 namespace linetree {
@@ -24,6 +26,11 @@ class PaperJudge : public Judge {
   Verdict FindFunnel(const Corners& corners) const;
   Verdict FindBlocker(const Corners& corners) const;
   Verdict FindPeak(const Corners& corners) const;
+  // By how much diffuse terms may exceed their largest extremal value inside the cell: where
+  // normals and light directions are not separable, n.l may reach 1. Empty when no bound is known
+  // (a light with fall-off).
+  std::optional<Rgb> DiffuseRise(const Corners& corners) const;
+  Rgb WeightOf(const RayTree& tree, size_t node) const;
 
   Verdict BlockedBranch(const Corners& corners, size_t node) const;
   Verdict BlockedLight(const Corners& corners, size_t node, int light) const;

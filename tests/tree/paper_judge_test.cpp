@@ -133,6 +133,22 @@ TEST_F(PaperJudgeTest, PeakUnderAHighlight) {
   EXPECT_EQ(Decide(0, point, {0.9, 0.8, -1}, 6).verdict, Verdict::kCertified);
 }
 
+TEST_F(PaperJudgeTest, TheFootOfANearbyLightIsBrighterThanTheExtremalRays) {
+  AddFloor();
+  scene_.ambient = {0, 0, 0};
+  scene_.lights = {test::PointLight({0.5, 0.5, 0.5})};
+  // The cell about the foot of the light: all corners are equally far from it.
+  const Vec3d foot{0.5, 0.5, 0};
+  const Judgement j = Decide(0, foot, {0.01, 0.01, -1}, 3);
+  ASSERT_EQ(j.verdict, Verdict::kCertified);
+  double hi = 0;
+  for (const auto& corner : j.interpolant.corner) hi = std::max<double>(hi, corner[0]);
+  const double truth = scene_.materials[0].diffuse.r;  // n.l = 1
+  EXPECT_GE(j.spread * hi, (truth - hi) * (1 - 1e-6));
+  scene_.lights[0].fade_distance = 1;
+  EXPECT_EQ(Decide(0, foot, {0.01, 0.01, -1}, 3).verdict, Verdict::kPeak);
+}
+
 TEST_F(PaperJudgeTest, BlockerBetweenAMirrorAndWhatItShows) {
   AddFloor(2);
   scene_.lights.clear();
