@@ -191,8 +191,8 @@ TEST(PaperScenes, HaveTheirPrimitivesLightsAndCameras) {
 
 TEST(PaperScenes, CostWhatTheirHeadersSay) {
   const Frame face = Render("face.textproto", "frame1", Mode::kClassical);
-  EXPECT_NEAR(PerPixel(face.stats.base.shade), 0.94, 0.01);
-  EXPECT_NEAR(PerPixel(face.stats.base.intersect), 2.93, 0.02);
+  EXPECT_NEAR(PerPixel(face.stats.base.shade), 0.96, 0.01);
+  EXPECT_NEAR(PerPixel(face.stats.base.intersect), 2.97, 0.02);
   const Frame room = Render("room.textproto", "frame1", Mode::kClassical);
   EXPECT_NEAR(PerPixel(room.stats.base.shade), 1.05, 0.01);
   EXPECT_NEAR(PerPixel(room.stats.base.intersect), 4.17, 0.02);
