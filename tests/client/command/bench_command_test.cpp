@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/client/command/program.h"
@@ -24,6 +25,33 @@ TEST(BenchCommand, ErrorPrintsATable) {
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("epsilon,classical_ms,cold_ms,warm_ms,cold_success,"));
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 4);
+}
+
+TEST(BenchCommand, AccuracyCountsPixelsBeyondEpsilon) {
+  TempDir dir;
+  const Finished run =
+      RunLinetree({"bench", "accuracy", "--scene", SourceFile("scenes/peak.textproto"), "--width",
+                   "32", "--height", "32", "--epsilons", "0.5,0.1", "--json", dir.File("a.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("of 4,096 pixels beyond epsilon"));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("a.json")));
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["pixels"], 1024);
+  EXPECT_GT(json[0]["warm"]["success"], 0);
+  EXPECT_EQ(json[1]["epsilon"], 0.1);
+}
+
+TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
+  TempDir dir;
+  const Finished run = RunLinetree({"bench", "paper", "--scenes", SourceFile("scenes"), "--width",
+                                    "48", "--height", "48", "--json", dir.File("p.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("Table 1: face, epsilon 0.25"));
+  EXPECT_THAT(run.out, HasSubstr("Table 3: room, first frame, epsilon 0.00"));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
+  EXPECT_EQ(json["tables"].size(), 8u);
+  EXPECT_EQ(json["tables"][2]["rows"].size(), 5u);
+  EXPECT_EQ(json["tables"][2]["rows"][0]["printed"]["success"], 0.76);
 }
 
 TEST(BenchCommand, ErrorWritesTableAndPlot) {

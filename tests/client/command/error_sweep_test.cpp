@@ -23,7 +23,11 @@ TEST(ErrorSweep, RowsOfASmallScene) {
       ReadSceneFileChecked(std::string(LINETREE_SOURCE_DIR) + "/scenes/peak.textproto");
   ASSERT_EQ(file.status(), absl::OkStatus());
   LocalClient client(1, uint64_t{64} << 20);
-  ErrorSweepOptions options{{file->scene->cameras[0], 48, 48, {}}, {0, 0.5}, 2};
+  ErrorSweepOptions options;
+  options.request.camera = file->scene->cameras[0];
+  options.request.width = options.request.height = 48;
+  options.epsilons = {0, 0.5};
+  options.repeats = 2;
   double share = 0;
   const auto rows =
       SweepErrors(client, *file, "sweep", options, [&share](double done) { share = done; });

@@ -159,7 +159,9 @@ TEST(RenderCommand, OutputThatCannotBeWrittenIsNamed) {
 }
 
 TEST(RenderCommand, NoServerIsSaid) {
-  ExpectFailure({"render", "--server", "127.0.0.1:1", "--scene", "room"}, "127.0.0.1:1");
+  ExpectFailure(
+      {"render", "--server", "127.0.0.1:1", "--connect-timeout", "0.1", "--scene", "room"},
+      "127.0.0.1:1");
 }
 
 }  // namespace
