@@ -17,9 +17,9 @@ namespace linetree {
 // evaluated with room for its rounding (kSupportRounding of the distances between the data, not of
 // their distance from the origin), whoever proposed n. May say false although they are disjoint:
 // where the gap beyond the margin is of the order of that rounding, and where the iteration
-// (Gilbert, Johnson and Keerthi 1988, at most kMaxProposals planes) is still on its way, which takes
-// curved shapes that nearly touch. Of 220,000 random pairs of all shapes none was missed at gaps of
-// 1e-4 of the size or more, 9 at 1e-6 (swept, as below: none and 25). No allocation.
+// (Gilbert, Johnson and Keerthi 1988, at most kMaxProposals planes) is still on its way, which
+// takes curved shapes that nearly touch. Of 220,000 random pairs of all shapes none was missed at
+// gaps of 1e-4 of the size or more, 9 at 1e-6 (swept, as below: none and 25). No allocation.
 bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin);
 
 // The same for the unbounded set conv(points) + { s * direction : s >= 0 } (direction of unit
