@@ -67,14 +67,14 @@ absl::StatusOr<v1::SceneInfo> Backend::LoadScene(v1::LoadSceneRequest request) {
   SceneHost& host = *added->host;
   log_->info("scene {} loaded: {} objects, version {}", name, host.scene().objects.size(),
              host.scene().version);
-  return SceneInfoToWire(name, host.scene(), host.cache().ByteSize());
+  return SceneInfoToWire(name, host.scene(), host.CacheBytes());
 }
 
 v1::ListScenesReply Backend::ListScenes() const {
   v1::ListScenesReply reply;
   for (const NamedHost& scene : scenes_.All()) {
     *reply.add_scenes() =
-        SceneInfoToWire(scene.name, scene.host->scene(), scene.host->cache().ByteSize());
+        SceneInfoToWire(scene.name, scene.host->scene(), scene.host->CacheBytes());
   }
   return reply;
 }
@@ -83,7 +83,7 @@ absl::StatusOr<v1::SceneInfo> Backend::DescribeScene(
     const v1::DescribeSceneRequest& request) const {
   auto scene = scenes_.Find(request.scene(), "scene");
   if (!scene.ok()) return scene.status();
-  return SceneInfoToWire(scene->name, scene->host->scene(), scene->host->cache().ByteSize());
+  return SceneInfoToWire(scene->name, scene->host->scene(), scene->host->CacheBytes());
 }
 
 absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneRequest& request) {

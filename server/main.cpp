@@ -33,7 +33,7 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "relative error that requests get which name none")
       ->capture_default_str();
   app.add_option("--judge", flags.judge, "judge of requests that name none")
-      ->check(CLI::IsMember({"paper"}))
+      ->check(CLI::IsMember({"paper", "certified"}))
       ->capture_default_str();
   app.add_option("--max-depth", options.defaults.limits.max_depth,
                  "rays on a path, the eye ray counted")

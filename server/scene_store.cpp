@@ -32,7 +32,7 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
 
 void SceneStore::ShareMemory() {
   for (const auto& [name, host] : hosts_) {
-    host->cache().SetMemoryBytes(limits_.memory_bytes / hosts_.size());
+    host->SetMemoryBytes(limits_.memory_bytes / hosts_.size());
   }
 }
 

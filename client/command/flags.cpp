@@ -139,13 +139,16 @@ void AddLimitsFlags(CLI::App& app, PathLimits& limits) {
 void AddOptionsFlags(CLI::App& app, RenderOptions& options) {
   const std::map<std::string, Mode> modes = {{"cached", Mode::kCached},
                                              {"classical", Mode::kClassical}};
-  const std::map<std::string, JudgeKind> judges = {{"paper", JudgeKind::kPaper}};
+  const std::map<std::string, JudgeKind> judges = {{"paper", JudgeKind::kPaper},
+                                                   {"certified", JudgeKind::kCertified}};
   app.add_option("--mode", options.mode, "cached, or classical: trace every ray")
       ->transform(CLI::CheckedTransformer(modes))
       ->type_name("MODE")
       ->default_str("cached")
       ->group("Rendering");
-  app.add_option("--judge", options.judge, "Which judge certifies cells: paper")
+  app.add_option(
+         "--judge", options.judge,
+         "paper: interpolate radiance; certified: prove light visibility, answer as classical")
       ->transform(CLI::CheckedTransformer(judges))
       ->type_name("JUDGE")
       ->default_str("paper")

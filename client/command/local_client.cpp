@@ -29,7 +29,7 @@ absl::StatusOr<v1::SceneInfo> LocalClient::AddScene(const std::string& name,
   } else if (host->scene().version != scene->version) {
     return absl::AlreadyExistsError(absl::StrCat("there is another scene '", name, "'"));
   }
-  return SceneInfoToWire(name, host->scene(), host->cache().ByteSize());
+  return SceneInfoToWire(name, host->scene(), host->CacheBytes());
 }
 
 absl::StatusOr<v1::SceneInfo> LocalClient::LoadScene(const std::string& name,
@@ -43,7 +43,7 @@ absl::StatusOr<std::vector<v1::SceneInfo>> LocalClient::ListScenes() {
   const std::lock_guard lock(mutex_);
   std::vector<v1::SceneInfo> infos;
   for (const auto& [name, host] : hosts_) {
-    infos.push_back(SceneInfoToWire(name, host->scene(), host->cache().ByteSize()));
+    infos.push_back(SceneInfoToWire(name, host->scene(), host->CacheBytes()));
   }
   return infos;
 }
@@ -51,7 +51,7 @@ absl::StatusOr<std::vector<v1::SceneInfo>> LocalClient::ListScenes() {
 absl::StatusOr<v1::SceneInfo> LocalClient::DescribeScene(const std::string& name) {
   const absl::StatusOr<HostPointer> host = Find(name);
   if (!host.ok()) return host.status();
-  return SceneInfoToWire(name, (*host)->scene(), (*host)->cache().ByteSize());
+  return SceneInfoToWire(name, (*host)->scene(), (*host)->CacheBytes());
 }
 
 absl::Status LocalClient::UnloadScene(const std::string& name) {

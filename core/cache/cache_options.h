@@ -17,7 +17,11 @@ struct CacheOptions {
   uint32_t min_cell_rays = 8;
 };
 
-// Corner samples only make building cheaper, so they get at most this share of the memory.
+// Share of the memory that the surface trees get; linetrees and samples get the rest.
+inline constexpr double kSurfaceShare = 0.25;
+
+// Corner samples only make building cheaper, so they get at most this share of the linetrees'
+// memory.
 inline constexpr double kSampleShare = 0.25;
 
 }  // namespace linetree

@@ -18,6 +18,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "core/cache/cache_options.h"
+#include "core/cache/parallel_loop.h"
 #include "core/cache/sample_store.h"
 #include "core/tree/linetree.h"
 #include "core/tree/paper_judge.h"
@@ -59,9 +60,6 @@ struct BuildStats {
   uint64_t cells_evicted = 0;
   uint64_t cells_dropped = 0;  // judged, but there was no room to keep them
 };
-
-// Runs body(i) for i in [0, count), in any order, on as many threads as the caller likes.
-using ParallelLoop = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
 
 class RadianceCache {
  public:

@@ -18,6 +18,7 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
           {"reflected_rays", total.reflected},
           {"refracted_rays", total.refracted},
           {"shadow_rays", total.shadow},
+          {"listed_shadow_rays", total.listed},
           {"intersect", total.intersect},
           {"shade", total.shade},
           {"base_intersect", stats.base.intersect},

@@ -71,7 +71,7 @@ Camera CameraFromWire(const v1::Camera& message) {
 v1::RenderOptions RenderOptionsToWire(const RenderOptions& options) {
   v1::RenderOptions message;
   message.set_mode(options.mode == Mode::kClassical ? v1::CLASSICAL : v1::CACHED);
-  message.set_judge(v1::PAPER);
+  message.set_judge(options.judge == JudgeKind::kCertified ? v1::JUDGE_CERTIFIED : v1::PAPER);
   message.set_max_relative_error(options.max_relative_error);
   message.set_max_depth(static_cast<uint32_t>(options.limits.max_depth));
   message.set_min_weight(options.limits.min_weight);
@@ -90,6 +90,7 @@ absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& mes
   if (message.mode() == v1::CACHED) options.mode = Mode::kCached;
   if (message.mode() == v1::CLASSICAL) options.mode = Mode::kClassical;
   if (message.judge() == v1::PAPER) options.judge = JudgeKind::kPaper;
+  if (message.judge() == v1::JUDGE_CERTIFIED) options.judge = JudgeKind::kCertified;
   if (message.has_max_relative_error()) options.max_relative_error = message.max_relative_error();
   if (message.has_max_depth()) {
     constexpr uint32_t kLargest = std::numeric_limits<int>::max();

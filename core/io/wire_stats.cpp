@@ -31,6 +31,7 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_ip_reflected_rays(stats.ip.reflected);
   message.set_ip_refracted_rays(stats.ip.refracted);
   message.set_ip_shadow_rays(stats.ip.shadow);
+  message.set_listed_shadow_rays(all.listed);
   message.set_intersect(all.intersect);
   message.set_shade(all.shade);
   message.set_base_intersect(stats.base.intersect);
@@ -66,6 +67,7 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
                 .reflected = message.reflected_rays() - stats.ip.reflected,
                 .refracted = message.refracted_rays() - stats.ip.refracted,
                 .shadow = message.shadow_rays() - stats.ip.shadow,
+                .listed = message.listed_shadow_rays(),
                 .intersect = message.base_intersect(),
                 .shade = message.base_shade()};
   for (size_t v = 0; v < kVerdictCount; ++v) {

@@ -29,7 +29,10 @@ class Batch {
 
   void FindHits();
   void AnswerFromCache();
+  // Traces what no cell answered.
   void TraceRest();
+  // The same, with shadow rays that ask the surface trees.
+  void TraceWithLists(SurfaceCache& surfaces);
   bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
 
  private:
@@ -42,6 +45,7 @@ class Batch {
   template <class F>
   void ForChunks(size_t count, RayCounts* counts, F body);
   void CollectPending();
+  std::vector<uint32_t> Unanswered() const;
   // Looks the pending rays up; keeps those whose cell is unbuilt, with the cells in `unbuilt`.
   void LookUp(const RadianceCache::Session& session, std::vector<CellId>& unbuilt);
   // Of the unbuilt cells, those that enough rays ask for. Drops the rays of the others.
@@ -179,11 +183,51 @@ void Batch::AnswerFromCache() {
   }
 }
 
-void Batch::TraceRest() {
+std::vector<uint32_t> Batch::Unanswered() const {
   std::vector<uint32_t> rest;
   for (size_t i = 0; i < answers_.size(); ++i) {
     if (answers_[i].source == Source::kTraced) rest.push_back(static_cast<uint32_t>(i));
   }
+  return rest;
+}
+
+// Rays go in waves: every 512th, then every 64th, every 8th, all others; scattered, so that no
+// pattern of the picture can hide from the first ones.
+constexpr int kWaves = 4;
+int WaveOf(uint32_t ray) {
+  const uint32_t mixed = (ray * 0x9e3779b1u) >> 23;  // 9 bits
+  if (mixed == 0) return 0;
+  if (mixed % 64 == 0) return 1;
+  return mixed % 8 == 0 ? 2 : 3;
+}
+
+void Batch::TraceWithLists(SurfaceCache& surfaces) {
+  const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
+    pool_.ParallelFor(count, body, &stats_.cpu_ms);
+  };
+  const std::vector<uint32_t> rest = Unanswered();
+  for (int wave = 0; wave < kWaves && !IsCancelled(); ++wave) {
+    std::vector<uint32_t> part;
+    for (const uint32_t i : rest) {
+      if (WaveOf(i) == wave) part.push_back(i);
+    }
+    ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
+      const SurfaceCache::Reader lists(surfaces);
+      for (size_t k = begin; k < end; ++k) {
+        const uint32_t i = part[k];
+        answers_[i].radiance = tracer_.RadianceFromHit(
+            hits_[i], rays_[i].origin, rays_[i].direction, options_.limits, lists, counts);
+      }
+    });
+    const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
+    const uint64_t certified = surfaces.Refine(weight, loop);
+    stats_.cells_tried += certified;
+    stats_.cells_accepted += certified;
+  }
+}
+
+void Batch::TraceRest() {
+  const std::vector<uint32_t> rest = Unanswered();
   ForChunks(rest.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = rest[k];
@@ -213,15 +257,17 @@ void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
 
 }  // namespace
 
-absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, const RenderOptions& options,
-                        std::span<const Ray> rays, WorkerPool& pool, const CancelToken* cancel,
-                        const Progress& progress, std::span<RayAnswer> answers, FrameStats& stats) {
+absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, SurfaceCache& surfaces,
+                        const RenderOptions& options, std::span<const Ray> rays, WorkerPool& pool,
+                        const CancelToken* cancel, const Progress& progress,
+                        std::span<RayAnswer> answers, FrameStats& stats) {
   LT_CHECK(rays.size() == answers.size());
   // A batch of this size bounds the memory for hits and queries (40 MiB) whatever a request asks
   // for.
   constexpr size_t kBatchRays = size_t{1} << 18;
-  const bool cached =
-      options.mode == Mode::kCached && options.max_relative_error >= kMinInterpolationError;
+  const bool certified = options.mode == Mode::kCached && options.judge == JudgeKind::kCertified;
+  const bool interpolated = options.mode == Mode::kCached && options.judge == JudgeKind::kPaper &&
+                            options.max_relative_error >= kMinInterpolationError;
   for (size_t begin = 0; begin < rays.size(); begin += kBatchRays) {
     const size_t count = std::min(kBatchRays, rays.size() - begin);
     const auto part = answers.subspan(begin, count);
@@ -232,14 +278,15 @@ absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, const Render
     };
     batch.FindHits();
     report(0.2);
-    if (cached && !batch.IsCancelled()) batch.AnswerFromCache();
+    if (interpolated && !batch.IsCancelled()) batch.AnswerFromCache();
     report(0.5);
-    if (!batch.IsCancelled()) batch.TraceRest();
+    if (certified && !batch.IsCancelled()) batch.TraceWithLists(surfaces);
+    if (!certified && !batch.IsCancelled()) batch.TraceRest();
     if (batch.IsCancelled()) return absl::CancelledError("the request was cancelled");
     CountAnswers(part, stats);
     report(1);
   }
-  stats.cache_bytes = cache.ByteSize();
+  stats.cache_bytes = cache.ByteSize() + surfaces.ByteSize();
   return absl::OkStatus();
 }
 

@@ -5,6 +5,9 @@
 // enough rays of the batch ask for and that have not been tried are built; rays whose cell was
 // refused go one level deeper in the next round. What no cell answers is traced. Rounds see the
 // cache only between builds, so with one client a picture does not depend on the number of threads.
+//
+// Under the certified judge every ray is traced, and shadow rays ask the surface trees first. A
+// small share of the rays goes first, to see which pieces of surface the others will need.
 #pragma once
 
 #include <atomic>
@@ -14,6 +17,7 @@
 
 #include "absl/status/status.h"
 #include "core/cache/radiance_cache.h"
+#include "core/cache/surface_cache.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
 #include "core/render/worker_pool.h"
@@ -49,8 +53,9 @@ inline constexpr double kMinInterpolationError = 0x1p-20;
 
 // Answers rays[i] in answers[i]; directions are of unit length. Adds to stats. CANCELLED when
 // `cancel` said so (what was built stays).
-absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, const RenderOptions& options,
-                        std::span<const Ray> rays, WorkerPool& pool, const CancelToken* cancel,
-                        const Progress& progress, std::span<RayAnswer> answers, FrameStats& stats);
+absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, SurfaceCache& surfaces,
+                        const RenderOptions& options, std::span<const Ray> rays, WorkerPool& pool,
+                        const CancelToken* cancel, const Progress& progress,
+                        std::span<RayAnswer> answers, FrameStats& stats);
 
 }  // namespace linetree

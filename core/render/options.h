@@ -7,7 +7,10 @@
 namespace linetree {
 
 enum class Mode { kCached, kClassical };
-enum class JudgeKind { kPaper };
+enum class JudgeKind {
+  kPaper,      // linetrees and the paper's tests: radiance is interpolated, epsilon is aimed at
+  kCertified,  // surface trees: light visibility is proved, every answer is the classical one
+};
 
 struct RenderOptions {
   Mode mode = Mode::kCached;

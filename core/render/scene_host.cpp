@@ -72,11 +72,29 @@ absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
   return Ray{ray.origin, Normalized(scaled)};
 }
 
+uint64_t SurfaceBytes(uint64_t memory_bytes) {
+  return static_cast<uint64_t>(kSurfaceShare * static_cast<double>(memory_bytes));
+}
+
+CacheOptions LinetreeShare(CacheOptions options) {
+  options.memory_bytes -= SurfaceBytes(options.memory_bytes);
+  return options;
+}
+
 }  // namespace
 
 SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options,
                      const RenderLimits& limits)
-    : scene_(std::move(scene)), limits_(limits), tracer_(*scene_), cache_(tracer_, cache_options) {}
+    : scene_(std::move(scene)),
+      limits_(limits),
+      tracer_(*scene_),
+      cache_(tracer_, LinetreeShare(cache_options)),
+      surfaces_(tracer_, SurfaceBytes(cache_options.memory_bytes)) {}
+
+void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
+  cache_.SetMemoryBytes(memory_bytes - SurfaceBytes(memory_bytes));
+  surfaces_.SetMemoryBytes(SurfaceBytes(memory_bytes));
+}
 
 absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
                                              const CancelToken* cancel, const Progress& progress) {
@@ -104,8 +122,8 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
     const auto band_progress = [&](double share) {
       if (progress) progress((top + share * rows) / request.height);
     };
-    if (auto s = AnswerRays(tracer_, cache_, request.options, rays, pool, cancel, band_progress,
-                            answers, frame.stats);
+    if (auto s = AnswerRays(tracer_, cache_, surfaces_, request.options, rays, pool, cancel,
+                            band_progress, answers, frame.stats);
         !s.ok()) {
       return s;
     }
@@ -136,8 +154,8 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
   }
   RayBatch batch;
   batch.answers.resize(rays.size());
-  if (auto s = AnswerRays(tracer_, cache_, options, unit_rays, pool, cancel, nullptr, batch.answers,
-                          batch.stats);
+  if (auto s = AnswerRays(tracer_, cache_, surfaces_, options, unit_rays, pool, cancel, nullptr,
+                          batch.answers, batch.stats);
       !s.ok()) {
     return s;
   }

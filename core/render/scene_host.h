@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "core/cache/radiance_cache.h"
+#include "core/cache/surface_cache.h"
 #include "core/render/answer_rays.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
@@ -46,6 +47,11 @@ class SceneHost {
   const Scene& scene() const { return *scene_; }
   const Tracer& tracer() const { return tracer_; }
   RadianceCache& cache() { return cache_; }
+  SurfaceCache& surfaces() { return surfaces_; }
+
+  // Bytes of linetrees, samples and surface trees together, and the budget that they share.
+  uint64_t CacheBytes() const { return cache_.ByteSize() + surfaces_.ByteSize(); }
+  void SetMemoryBytes(uint64_t memory_bytes);
 
   // INVALID_ARGUMENT or RESOURCE_EXHAUSTED for a bad request, CANCELLED when `cancel` said so.
   absl::StatusOr<Frame> RenderFrame(const FrameRequest& request, WorkerPool& pool,
@@ -64,6 +70,7 @@ class SceneHost {
   const RenderLimits limits_;
   const Tracer tracer_;
   RadianceCache cache_;
+  SurfaceCache surfaces_;
   mutable std::mutex totals_mutex_;
   HostTotals totals_;  // guarded by totals_mutex_
 };

@@ -10,8 +10,9 @@ struct RayCounts {
   uint64_t reflected = 0;  // total internal reflection included
   uint64_t refracted = 0;
   uint64_t shadow = 0;
-  // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray), Shade a
-  // radiance computation at a point.
+  uint64_t listed = 0;  // of the shadow rays: answered without a search of the scene (LightLists)
+  // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray but `listed`
+  // ones), Shade a radiance computation at a point.
   uint64_t intersect = 0;
   uint64_t shade = 0;
 
@@ -20,6 +21,7 @@ struct RayCounts {
     reflected += o.reflected;
     refracted += o.refracted;
     shadow += o.shadow;
+    listed += o.listed;
     intersect += o.intersect;
     shade += o.shade;
     return *this;

@@ -34,12 +34,18 @@ struct Transmission {
   std::optional<Vec3<S>> direction;  // nothing: total internal reflection
 };
 
-// kRecorded: whether `tree` is written.
-template <class S, bool kRecorded>
+// kRecorded: whether `tree` is written. kListed: whether `lists` is asked for occluders.
+template <class S, bool kRecorded, bool kListed = false>
 class PathTracer {
  public:
-  PathTracer(const TracerOf<S>& tracer, const PathLimits& limits, RayCounts& counts, RayTree* tree)
-      : tracer_(tracer), scene_(tracer.scene()), limits_(limits), counts_(counts), tree_(tree) {}
+  PathTracer(const TracerOf<S>& tracer, const PathLimits& limits, RayCounts& counts, RayTree* tree,
+             const LightLists* lists = nullptr)
+      : tracer_(tracer),
+        scene_(tracer.scene()),
+        limits_(limits),
+        counts_(counts),
+        tree_(tree),
+        lists_(lists) {}
 
   RgbOf<S> Follow(const Leg<S>& leg) {
     ++counts_.intersect;
@@ -142,15 +148,16 @@ class PathTracer {
                  RgbOf<S>& radiance) {
     if (!UsesLights(material)) return;
     const RayStart start{hit.object, hit.face, hit.side};
+    const LightList* known = nullptr;
+    if constexpr (kListed) known = lists_->Find(hit);
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
       const Light& light = scene_.lights[i];
       const LightView<S> view = ViewOf(light, hit.point);
       const S cosine = Dot(hit.normal, view.to_light);
       LightTerm term{LightState::kFacingAway};
       if (cosine > 0) {
-        ++counts_.shadow;
-        ++counts_.intersect;
-        const auto shadow = tracer_.CastShadow(hit.point, static_cast<int>(i), start);
+        const auto shadow = ShadowOf(known == nullptr ? LightList{} : known[i], hit.point,
+                                     static_cast<int>(i), start);
         term = shadow.term;
         if (term.state == LightState::kLit) {
           radiance += shadow.filter * LightTermRadiance(material, light, view, cosine, hit.normal,
@@ -161,6 +168,29 @@ class PathTracer {
         tree_->lights[static_cast<size_t>(NodeAt(node).first_light) + i] = term;
       }
     }
+  }
+
+  using Shadow = typename TracerOf<S>::Shadow;
+  Shadow ShadowOf(const LightList& known, const Vec3<S>& point, int light, const RayStart& start) {
+    ++counts_.shadow;
+    if (known.knowledge == LightKnowledge::kUnknown) {
+      ++counts_.intersect;
+      return tracer_.CastShadow(point, light, start);
+    }
+    ++counts_.listed;
+    const bool self_matters =
+        known.knowledge == LightKnowledge::kOn && start.side == Side::kInside;
+    if (known.knowledge == LightKnowledge::kListed || self_matters) {
+      return tracer_.CastShadowAmong(known.candidates, point, light, start);
+    }
+    Shadow shadow;
+    if (known.knowledge == LightKnowledge::kOff) {
+      shadow.term = {LightState::kBlocked, known.occluder};
+      return shadow;
+    }
+    shadow.term.state = LightState::kLit;
+    shadow.filter = {S(1), S(1), S(1)};
+    return shadow;
   }
 
   const Shape& ShapeOf(int object) const {
@@ -206,6 +236,7 @@ class PathTracer {
   const PathLimits& limits_;
   RayCounts& counts_;
   RayTree* tree_;
+  const LightLists* lists_;
 };
 
 // Runs fn(path_tracer) with or without a record.
@@ -242,6 +273,20 @@ RgbOf<S> TracerOf<S>::RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin
   const Leg<S> leg = EyeLeg(origin, direction);
   return Run(*this, limits, counts, tree, [&](auto& path) { return path.Answer(leg, hit); });
 }
+
+template <class S>
+RgbOf<S> TracerOf<S>::RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin,
+                                      const Vec3<S>& direction, const PathLimits& limits,
+                                      const LightLists& lists, RayCounts& counts) const {
+  static_assert(std::is_same_v<S, double>, "lists hold for the arithmetic of double");
+  LT_CHECK(limits.max_depth >= 1 && limits.max_depth <= kMaxPathDepth);
+  PathTracer<S, false, true> path(*this, limits, counts, nullptr, &lists);
+  return path.Answer(EyeLeg(origin, direction), hit);
+}
+
+template Rgb TracerOf<double>::RadianceFromHit(const Hit&, const Vec3d&, const Vec3d&,
+                                               const PathLimits&, const LightLists&,
+                                               RayCounts&) const;
 
 #define LINETREE_INSTANTIATE(S)                                                                   \
   template RgbOf<S> TracerOf<S>::Radiance(const Vec3<S>&, const Vec3<S>&, const PathLimits&,      \

@@ -79,6 +79,10 @@ std::unique_ptr<const Bvh> MakeHierarchy(const Scene& scene, Hierarchy hierarchy
 
 }  // namespace
 
+struct ShadowFilters {
+  Filters list;
+};
+
 template <class S>
 TracerOf<S>::TracerOf(const Scene& scene, Hierarchy hierarchy)
     : scene_(&scene), media_(scene), bvh_(MakeHierarchy(scene, hierarchy)) {}
@@ -139,27 +143,54 @@ HitOf<S> TracerOf<S>::IntersectObjectLine(int object, const Vec3<S>& origin,
 }
 
 template <class S>
+bool TracerOf<S>::AddOccluder(int object, const Vec3<S>& point, const Vec3<S>& direction,
+                              const S& t_max, const RayStart& start, Shadow& shadow,
+                              ShadowFilters& filters) const {
+  const int crossings =
+      CountBefore(RayCrossings(ShapeOf(object), object, point, direction, start), t_max);
+  if (crossings == 0) return true;
+  if (IsBlack(scene_->MaterialOf(object).transmit)) {
+    shadow.term.state = LightState::kBlocked;
+    shadow.term.occluder = object;
+    return false;
+  }
+  filters.list.push_back({object, crossings});
+  return true;
+}
+
+template <class S>
 typename TracerOf<S>::Shadow TracerOf<S>::CastShadow(const Vec3<S>& point, int light,
                                                      const RayStart& start) const {
   const LightSegment<S> segment = SegmentTo(scene_->lights[static_cast<size_t>(light)], point);
   Shadow shadow;
   shadow.term.state = LightState::kLit;
-  Filters filters;
+  ShadowFilters filters;
   ForEachAlong(point, segment.direction, segment.t_max, [&](int object) {
-    const int crossings = CountBefore(
-        RayCrossings(ShapeOf(object), object, point, segment.direction, start), segment.t_max);
-    if (crossings == 0) return true;
-    if (IsBlack(scene_->MaterialOf(object).transmit)) {
-      shadow.term.state = LightState::kBlocked;
-      shadow.term.occluder = object;
-      return false;
-    }
-    filters.push_back({object, crossings});
-    return true;
+    return AddOccluder(object, point, segment.direction, segment.t_max, start, shadow, filters);
   });
   if (shadow.term.state == LightState::kBlocked) return shadow;
-  shadow.term.crossings = HashOf(filters);
-  shadow.filter = ProductOf<S>(filters, *scene_);
+  shadow.term.crossings = HashOf(filters.list);
+  shadow.filter = ProductOf<S>(filters.list, *scene_);
+  return shadow;
+}
+
+template <class S>
+typename TracerOf<S>::Shadow TracerOf<S>::CastShadowAmong(std::span<const int32_t> objects,
+                                                          const Vec3<S>& point, int light,
+                                                          const RayStart& start) const {
+  const LightSegment<S> segment = SegmentTo(scene_->lights[static_cast<size_t>(light)], point);
+  Shadow shadow;
+  shadow.term.state = LightState::kLit;
+  ShadowFilters filters;
+  const auto add = [&](int object) {
+    return AddOccluder(object, point, segment.direction, segment.t_max, start, shadow, filters);
+  };
+  if (start.side == Side::kInside && !add(start.object)) return shadow;
+  for (const int32_t object : objects) {
+    if (!add(object)) return shadow;
+  }
+  shadow.term.crossings = HashOf(filters.list);
+  shadow.filter = ProductOf<S>(filters.list, *scene_);
   return shadow;
 }
 

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/scene/scene.h"
 #include "core/trace/bvh.h"
 #include "core/trace/counts.h"
 #include "core/trace/hit.h"
+#include "core/trace/light_lists.h"
 #include "core/trace/media.h"
 #include "core/trace/ray_tree.h"
 
@@ -34,6 +36,8 @@ struct Traced {
   Rgb radiance;
   Hit hit;  // of the ray itself
 };
+
+struct ShadowFilters;  // the transparent objects met by one shadow ray
 
 template <class S>
 class TracerOf {
@@ -62,6 +66,10 @@ class TracerOf {
     RgbOf<S> filter;
   };
   Shadow CastShadow(const Vec3<S>& point, int light, const RayStart& start) const;
+  // The same where only the given objects may be in between and, for a start on an inner side, the
+  // start's own object: equal bits, without a search.
+  Shadow CastShadowAmong(std::span<const int32_t> objects, const Vec3<S>& point, int light,
+                         const RayStart& start) const;
 
   // Whether one object alone blocks the way from `point` to the light (any of its surfaces; whether
   // it is opaque is not asked).
@@ -77,6 +85,11 @@ class TracerOf {
                            const PathLimits& limits, RayCounts& counts,
                            RayTree* tree = nullptr) const;
 
+  // The same bits, with `lists` asked before the scene is searched for occluders. Double only.
+  RgbOf<S> RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin, const Vec3<S>& direction,
+                           const PathLimits& limits, const LightLists& lists,
+                           RayCounts& counts) const;
+
   // The objects' hierarchy; null when the tracer is flat.
   const Bvh* bvh() const { return bvh_.get(); }
 
@@ -86,6 +99,10 @@ class TracerOf {
   template <class ObjectFn>
   void ForEachAlong(const Vec3<S>& origin, const Vec3<S>& direction, const S& t_max,
                     ObjectFn&& fn) const;
+
+  // Takes one object that may be in between into account; false when it ends the search.
+  bool AddOccluder(int object, const Vec3<S>& point, const Vec3<S>& direction, const S& t_max,
+                   const RayStart& start, Shadow& shadow, ShadowFilters& filters) const;
 
   const Shape& ShapeOf(int object) const {
     return scene_->objects[static_cast<size_t>(object)].shape;

@@ -135,6 +135,7 @@ void SurfaceChart::SetFrame(Curved curved, const AffineFrame& frame) {
   const double condition =
       FrobeniusNorm(frame.object_from_world) * FrobeniusNorm(frame.world_from_object);
   pad_ = slack_ * (1 + kPadMargin) + kChartRounding * condition * reach_;
+  max_stretch_ = FrobeniusNorm(frame.world_from_object);
 }
 
 SurfaceChart::PlanePatch SurfaceChart::MakePlane(const Vec3d& center, const Vec3d& ex,
@@ -179,6 +180,24 @@ SurfacePoint SurfaceChart::Locate(int face, const Vec3d& point) const {
   const Vec3d d = point - plane.center;
   return {curved_patches_ + index, ToUnit(Dot(d, plane.gx), plane.hx),
           ToUnit(Dot(d, plane.gy), plane.hy)};
+}
+
+// The nearest surface point with the same coordinates lies along the radius of a sphere, across the
+// axis of a frustum, along a plane's normal.
+bool SurfaceChart::IsOn(int face, const Vec3d& point) const {
+  const double tolerance = slack_ / 2;
+  if (curved_ == Curved::kNone || (curved_ == Curved::kLateral && face > 0)) {
+    const int index = curved_ == Curved::kLateral ? face - 1 : face;
+    const PlanePatch& plane = planes_.at(static_cast<size_t>(index));
+    const Vec3d d = point - plane.center;
+    return std::abs(Dot(d, plane.normal)) <= tolerance && std::abs(Dot(d, plane.gx)) <= plane.hx &&
+           std::abs(Dot(d, plane.gy)) <= plane.hy;
+  }
+  const Vec3d p = frame_.object_from_world * (point - frame_.center);
+  if (curved_ == Curved::kSphere) return std::abs(Length(p) - 1) * max_stretch_ <= tolerance;
+  const double radius = base_radius_ + taper_ * p.z;
+  return p.z >= 0 && p.z <= 1 &&
+         std::abs(std::hypot(p.x, p.y) - radius) * max_stretch_ <= tolerance;
 }
 
 SurfacePoint SurfaceChart::LocateOnSphere(const Vec3d& point) const {

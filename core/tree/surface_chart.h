@@ -86,6 +86,11 @@ class SurfaceChart {
   // the surface, by rounding, get coordinates too, clamped into [0, 1].
   SurfacePoint Locate(int face, const Vec3d& point) const;
 
+  // Whether the point is certainly within half of Slack() of a surface point with the same
+  // coordinates. Hits of rays from very far, near a cone's apex or at the tip of a needle may not
+  // be; nothing that a hull promises holds for them.
+  bool IsOn(int face, const Vec3d& point) const;
+
   // conv(points) contains every x on the surface whose Locate falls into the cell, up to rounding
   // of Locate at the cell's sides, and every point within Slack() of such an x.
   PatchHull HullOf(int patch, const SurfaceCell& cell) const;
@@ -124,6 +129,7 @@ class SurfaceChart {
 
   double reach_;  // the object's size plus its distance from the origin
   double slack_;
+  double max_stretch_ = 1;  // of a curved frame: at least world length per object length
   double pad_;  // what curved hulls are widened by: the slack and a bound on all rounding
   Curved curved_ = Curved::kNone;
   int curved_patches_ = 0;

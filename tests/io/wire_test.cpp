@@ -254,7 +254,7 @@ TEST(WireTest, SceneStatsAreThoseOfTheHost) {
   EXPECT_EQ(stats.frames(), 1u);
   EXPECT_EQ(stats.ray_batches(), 0u);
   EXPECT_EQ(stats.totals().pixels(), 64u * 64u);
-  EXPECT_EQ(stats.cache_bytes(), host.cache().ByteSize());
+  EXPECT_EQ(stats.cache_bytes(), host.CacheBytes());
   uint64_t cells = 0;
   for (const auto& object : stats.objects()) {
     EXPECT_EQ(object.name(), host.scene().objects[object.object()].name);

@@ -60,16 +60,16 @@ TEST(SceneStoreTest, CachesShareTheMemory) {
   SceneStore store({.memory_bytes = kMemory});
   const auto first = store.Add("a", SceneOfVersion("1"), false);
   Render(*first->host);
-  const uint64_t alone = first->host->cache().ByteSize();
+  const uint64_t alone = first->host->CacheBytes();
   ASSERT_GT(alone, kMemory / 2) << "too little for the test to mean anything";
   const auto second = store.Add("b", SceneOfVersion("1"), false);
-  EXPECT_LE(first->host->cache().ByteSize(), kMemory / 2);
+  EXPECT_LE(first->host->CacheBytes(), kMemory / 2);
   Render(*first->host);
   Render(*second->host);
-  EXPECT_LE(first->host->cache().ByteSize() + second->host->cache().ByteSize(), kMemory);
+  EXPECT_LE(first->host->CacheBytes() + second->host->CacheBytes(), kMemory);
   EXPECT_TRUE(store.Remove("b", "scene").ok());
   Render(*first->host);
-  EXPECT_GT(first->host->cache().ByteSize(), kMemory / 2);
+  EXPECT_GT(first->host->CacheBytes(), kMemory / 2);
 }
 
 TEST(SceneStoreTest, ErrorsNameTheField) {

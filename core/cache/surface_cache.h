@@ -1,0 +1,75 @@
+// The surface trees of all objects of one scene under a byte budget: what is certain about lights,
+// for every shading point of every request. It depends on nothing but the scene, so all requests
+// share it; answers that use it equal the classical tracer's bit for bit.
+//
+// Thread safety: every method may be called from any thread. Readers share a lock; Refine certifies
+// outside it and takes it to publish.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <vector>
+
+#include "core/cache/parallel_loop.h"
+#include "core/trace/light_lists.h"
+#include "core/trace/tracer.h"
+#include "core/tree/light_certifier.h"
+#include "core/tree/surface_tree.h"
+
+namespace linetree {
+
+// A cell is divided when this many shading points of one frame fall into it and a light above it is
+// undecided (DESIGN, section 7: smaller cells cost more than they save).
+inline constexpr double kMinSurfaceUses = 200;
+
+class SurfaceCache {
+ public:
+  // Keeps a reference to the tracer, which must outlive the cache.
+  SurfaceCache(const Tracer& tracer, uint64_t memory_bytes);
+
+  // Holds the lock: keep it short, a part of a frame.
+  class Reader : public LightLists {
+   public:
+    explicit Reader(const SurfaceCache& cache);
+    const LightList* Find(const Hit& hit) const override;
+
+   private:
+    const SurfaceCache& cache_;
+    std::shared_lock<std::shared_mutex> lock_;
+  };
+
+  // Divides the cells that were used since the last call where that pays; `weight` is the number of
+  // shading points that one use stands for. Returns how many cells it certified.
+  uint64_t Refine(double weight, const ParallelLoop& loop);
+
+  void SetMemoryBytes(uint64_t memory_bytes);
+  uint64_t ByteSize() const;
+  uint64_t CountBytes() const;
+  uint64_t CellCount() const;
+  void Clear();
+
+ private:
+  struct Work;
+
+  void PlantTrees();
+  std::vector<Work> CollectUsed(double weight);
+  // Certifies what the works ask for and puts it into the trees; the children's works come back.
+  std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
+  void Evict();
+
+  const Tracer& tracer_;
+  const LightCertifier certifier_;
+  std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  mutable std::shared_mutex mutex_;
+  // Guarded by mutex_:
+  uint64_t memory_bytes_;
+  std::vector<std::unique_ptr<SurfaceTree>> trees_;  // by object
+  mutable std::vector<std::atomic<bool>> wanted_;    // by object: a hit found no tree; atomic
+  uint64_t byte_size_ = 0;
+  uint64_t cells_ = 0;
+  uint32_t clock_ = 1;
+};
+
+}  // namespace linetree

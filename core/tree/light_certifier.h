@@ -1,0 +1,68 @@
+// What is certain about the lights above a piece of surface (DESIGN: certified cells, light
+// visibility over a patch). No sampling: shafts are convex hulls, and only a separating plane or a
+// convex shadow decides.
+//
+// Why it holds. Every shading point of the piece lies in its patch hull H, and every shadow ray to
+// a light at L in conv(H, L). An object that is certainly apart from that set, by a margin far
+// above the tracer's rounding, is met by none of them. The points from which a convex object K
+// hides L are L + s (K - L), s >= 1, a convex set; if it holds the eight points of H, it holds all
+// of H. Directional lights are the limit: conv(H) + half line.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/trace/light_lists.h"
+#include "core/trace/tracer.h"
+#include "core/tree/surface_chart.h"
+
+namespace linetree {
+
+// The lights as seen from one piece of surface. Movable, not copyable: lists point into `objects`.
+struct CellLights {
+  CellLights() = default;
+  CellLights(CellLights&&) = default;
+  CellLights& operator=(CellLights&&) = default;
+
+  std::vector<LightList> lights;
+  std::vector<int32_t> objects;  // the candidates of all lights, one after the other
+
+  uint64_t HeapBytes() const {
+    return lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t);
+  }
+  // Whether a smaller piece could know more.
+  bool IsDecided() const;
+};
+
+// A list that is longer is not kept: the scene's hierarchy finds occluders faster.
+inline constexpr size_t kMaxCandidates = 24;
+
+// Shadow rays must clear objects by this share of the lengths involved before an object is dropped:
+// a million times the rounding of a crossing (about 2^-50), a thousandth of a pixel at the finest.
+inline constexpr double kClearance = 0x1p-30;
+
+class LightCertifier {
+ public:
+  // Keeps a reference to the tracer, which must outlive it.
+  explicit LightCertifier(const Tracer& tracer);
+
+  // Knowledge about a piece of the given object. With `parent`, what is known of a larger piece
+  // that contains it, only that one's candidates are looked at.
+  CellLights Certify(int object, const PatchHull& hull, const CellLights* parent) const;
+
+ private:
+  struct Bundle;
+
+  std::vector<int32_t> Candidates(const Bundle& bundle, const LightList& inherited) const;
+  bool MayBlock(const Bundle& bundle, int object) const;
+  // Whether the object hides the light from every point of the hull.
+  bool HidesAll(const Bundle& bundle, int object) const;
+
+  const Tracer& tracer_;
+  const Scene& scene_;
+  Box3 world_;
+  // By object: how far the surface that rays meet may lie outside the one whose support is taken.
+  std::vector<double> surplus_;
+};
+
+}  // namespace linetree

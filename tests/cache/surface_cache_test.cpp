@@ -1,0 +1,90 @@
+#include "core/cache/surface_cache.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/demo_scenes.h"
+
+namespace linetree {
+namespace {
+
+const ParallelLoop kSerial = [](size_t count, const std::function<void(size_t)>& body) {
+  for (size_t i = 0; i < count; ++i) body(i);
+};
+
+class SurfaceCacheTest : public testing::Test {
+ protected:
+  SurfaceCacheTest() : scene_(test::BallsOnFloor(6, 90)), tracer_(*scene_) {}
+
+  // Looks up the hits of random eye rays.
+  int Use(const SurfaceCache& cache, uint64_t seed, int rays) {
+    test::Random random(seed);
+    const SurfaceCache::Reader lists(cache);
+    int known = 0;
+    for (int i = 0; i < rays; ++i) {
+      const Vec3d eye = random.InBox({-5, -9, 1}, {5, -7, 6});
+      const Vec3d at = random.InBox({-4, -3, 0}, {4, 4, 2});
+      const Hit hit = tracer_.Intersect(eye, at - eye, {});
+      if (hit.IsHit() && lists.Find(hit) != nullptr) ++known;
+    }
+    return known;
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  Tracer tracer_;
+};
+
+TEST_F(SurfaceCacheTest, KnowsNothingUntilItIsRefined) {
+  SurfaceCache cache(tracer_, 10'000'000);
+  EXPECT_EQ(Use(cache, 1, 100), 0);
+  EXPECT_EQ(cache.Refine(1, kSerial), 0u) << "plants trees where hits asked for them";
+  EXPECT_EQ(Use(cache, 1, 100), 0);
+  EXPECT_GT(cache.Refine(1, kSerial), 0u);
+  EXPECT_GT(Use(cache, 1, 100), 60);
+}
+
+TEST_F(SurfaceCacheTest, UndecidedCellsAreDividedWhereTheyAreUsedMuch) {
+  SurfaceCache few(tracer_, 10'000'000), many(tracer_, 10'000'000);
+  for (int round = 0; round < 4; ++round) {
+    Use(few, 2, 500);
+    few.Refine(0.01, kSerial);
+    Use(many, 2, 500);
+    many.Refine(100, kSerial);
+  }
+  EXPECT_GT(many.CellCount(), 10 * few.CellCount());
+}
+
+TEST_F(SurfaceCacheTest, BytesAreExactAndWithinTheBudget) {
+  for (const uint64_t budget : {uint64_t{0}, uint64_t{20'000}, uint64_t{200'000}}) {
+    SurfaceCache cache(tracer_, budget);
+    for (uint64_t round = 0; round < 20; ++round) {
+      Use(cache, round, 300);
+      cache.Refine(50, kSerial);
+      ASSERT_LE(cache.ByteSize(), budget);
+      ASSERT_EQ(cache.ByteSize(), cache.CountBytes());
+    }
+  }
+}
+
+TEST_F(SurfaceCacheTest, ASmallerBudgetEvictsAndALargerOneGrowsAgain) {
+  SurfaceCache cache(tracer_, 4'000'000);
+  const auto work = [&] {
+    for (uint64_t round = 0; round < 5; ++round) {
+      Use(cache, round, 1000);
+      cache.Refine(100, kSerial);
+    }
+  };
+  work();
+  const uint64_t large = cache.ByteSize();
+  cache.SetMemoryBytes(large / 2);
+  EXPECT_LE(cache.ByteSize(), large / 2);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  cache.SetMemoryBytes(4'000'000);
+  work();
+  EXPECT_GT(cache.ByteSize(), large / 2);
+  cache.Clear();
+  EXPECT_EQ(cache.ByteSize(), 0u);
+  EXPECT_EQ(cache.CellCount(), 0u);
+}
+
+}  // namespace
+}  // namespace linetree

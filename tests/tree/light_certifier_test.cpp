@@ -1,0 +1,95 @@
+#include "core/tree/light_certifier.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scene_builder.h"
+
+namespace linetree {
+namespace {
+
+using test::ObjectOf;
+
+class LightCertifierTest : public testing::Test {
+ protected:
+  LightCertifierTest() {
+    scene_.materials = {test::Matte({1, 1, 1}), test::Glass({0.5, 0.5, 0.5}, 1)};
+    scene_.lights = {test::PointLight({0, 0, 10})};
+    // The floor, [-4, 4]^2, is object 0.
+    scene_.objects.push_back(
+        ObjectOf(test::Polygon({{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}})));
+  }
+  void Add(const Shape& shape, int material = 0) {
+    scene_.objects.push_back(ObjectOf(shape, material));
+  }
+  // Knowledge about the floor's cell of the given depth that holds (x, y).
+  LightKnowledge Knowledge(double x, double y, int depth) {
+    const Tracer tracer(scene_);
+    const SurfaceChart chart(scene_.objects[0]);
+    const SurfacePoint at = chart.Locate(0, {x, y, 0});
+    cell_ = LightCertifier(tracer).Certify(0, chart.HullOf(at.patch, CellAt(at, depth)), nullptr);
+    return cell_.lights[0].knowledge;
+  }
+
+  Scene scene_;
+  CellLights cell_;
+};
+
+TEST_F(LightCertifierTest, NothingInBetweenIsOn) {
+  EXPECT_EQ(Knowledge(1, 1, 0), LightKnowledge::kOn);
+  EXPECT_TRUE(cell_.IsDecided());
+}
+
+TEST_F(LightCertifierTest, AShadowIsOffInsideListedAtItsEdgeAndOnOutside) {
+  Add(test::Sphere({0, 0, 3}, 1));  // shadow of radius about 1.44
+  EXPECT_EQ(Knowledge(0.1, 0.1, 4), LightKnowledge::kOff);
+  EXPECT_EQ(cell_.lights[0].occluder, 1);
+  EXPECT_EQ(Knowledge(1.43, 0.01, 4), LightKnowledge::kListed);
+  ASSERT_EQ(cell_.lights[0].candidates.size(), 1u);
+  EXPECT_EQ(cell_.lights[0].candidates[0], 1);
+  EXPECT_FALSE(cell_.IsDecided());
+  EXPECT_EQ(Knowledge(3, 3, 4), LightKnowledge::kOn);
+}
+
+TEST_F(LightCertifierTest, GlassAndOpenSurfacesAreNeverOff) {
+  Add(test::Sphere({0, 0, 3}, 1), 1);
+  EXPECT_EQ(Knowledge(0.1, 0.1, 4), LightKnowledge::kListed);
+  scene_.objects[1] = ObjectOf(test::Frustum({0, 0, 1}, {0, 0, 3}, 1, 1, true));
+  EXPECT_EQ(Knowledge(0.05, 0.05, 6), LightKnowledge::kListed) << "light comes down the tube";
+}
+
+TEST_F(LightCertifierTest, DirectionalLightsToo) {
+  scene_.lights = {test::DirectionalLight({0, 0.5, 1})};
+  Add(test::Box({-1, -0.5, 2}, {1, 0.5, 2.5}));  // shadow about y = -1.1
+  EXPECT_EQ(Knowledge(0, -1.12, 5), LightKnowledge::kOff);
+  EXPECT_EQ(Knowledge(0.99, -1.12, 5), LightKnowledge::kListed);
+  EXPECT_EQ(Knowledge(0, 1, 4), LightKnowledge::kOn);
+}
+
+TEST_F(LightCertifierTest, ChildrenLookAtTheirParentsCandidatesOnly) {
+  for (int i = 0; i < 5; ++i) Add(test::Sphere({-3.0 + 1.5 * i, 0, 3}, 0.2));
+  const Tracer tracer(scene_);
+  const LightCertifier certifier(tracer);
+  const SurfaceChart chart(scene_.objects[0]);
+  const CellLights root = certifier.Certify(0, chart.HullOf(0, {}), nullptr);
+  ASSERT_EQ(root.lights[0].candidates.size(), 5u);
+  for (int c = 0; c < 4; ++c) {
+    const PatchHull hull = chart.HullOf(0, SurfaceCell{}.Child(c));
+    const CellLights filtered = certifier.Certify(0, hull, &root);
+    const CellLights afresh = certifier.Certify(0, hull, nullptr);
+    ASSERT_EQ(filtered.objects, afresh.objects);
+    EXPECT_LT(filtered.objects.size(), 5u);
+  }
+}
+
+TEST_F(LightCertifierTest, LongListsAreLeftToTheHierarchy) {
+  for (int i = 0; i < 30; ++i) Add(test::Sphere({0.01 * i, 0, 3 + 0.1 * i}, 0.04));
+  EXPECT_EQ(Knowledge(0, 0, 0), LightKnowledge::kUnknown);
+}
+
+TEST_F(LightCertifierTest, TouchingObjectsStayCandidates) {
+  Add(test::Sphere({0.25, 0.25, 0.5}, 0.5));  // stands on the floor
+  EXPECT_EQ(Knowledge(0.9, 0.25, 3), LightKnowledge::kListed);
+}
+
+}  // namespace
+}  // namespace linetree
