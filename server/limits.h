@@ -21,6 +21,10 @@ struct ServerLimits {
   // refused by a message that says `rays`.
   int max_message_bytes = 768 << 20;
   size_t max_scene_bytes = size_t{256} << 20;
+  // Messages within a scene's message: several for each of the objects that it may have, and some
+  // gigabytes at worst.
+  uint64_t max_scene_messages = 40'000'000;
+  size_t max_batch_bytes = size_t{80} << 20;  // max_rays rays, and what goes with them
   // Requests other than scenes and batches of rays.
   size_t max_request_bytes = size_t{1} << 20;
 

@@ -15,23 +15,64 @@ namespace linetree {
 
 namespace pb = google::protobuf;
 
-absl::Status Parse(const grpc::ByteBuffer& bytes, size_t max_bytes, pb::Message* message) {
-  const std::string& type = message->GetDescriptor()->name();
-  if (bytes.Length() > max_bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(type, ": expected at most ", max_bytes, " bytes, got ", bytes.Length()));
+namespace {
+
+using pb::internal::WireFormatLite;
+
+// As deep as protobuf itself goes.
+constexpr int kMaxNesting = 100;
+
+// Counts the messages inside one of this type, up to the stream's limit.
+uint64_t CountInside(pb::io::CodedInputStream& stream, const pb::Descriptor* type, int nesting) {
+  uint64_t count = 0;
+  while (const uint32_t tag = stream.ReadTag()) {
+    const auto* field = type->FindFieldByNumber(WireFormatLite::GetTagFieldNumber(tag));
+    const bool is_message =
+        field != nullptr && field->message_type() != nullptr && nesting < kMaxNesting &&
+        WireFormatLite::GetTagWireType(tag) == WireFormatLite::WIRETYPE_LENGTH_DELIMITED;
+    if (!is_message) {
+      if (!WireFormatLite::SkipField(&stream, tag)) break;
+      continue;
+    }
+    int length = 0;
+    if (!stream.ReadVarintSizeAsInt(&length)) break;
+    const auto outer = stream.PushLimit(length);
+    count += 1 + CountInside(stream, field->message_type(), nesting + 1);
+    if (!stream.CheckEntireMessageConsumedAndPopLimit(outer)) break;
   }
+  return count;
+}
+
+}  // namespace
+
+absl::Status CheckSize(const grpc::ByteBuffer& bytes, size_t max_bytes, const pb::Message& type) {
+  if (bytes.Length() <= max_bytes) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat(type.GetDescriptor()->name(),
+                                                   ": expected at most ", max_bytes, " bytes, got ",
+                                                   bytes.Length()));
+}
+
+absl::Status Parse(const grpc::ByteBuffer& bytes, size_t max_bytes, pb::Message* message) {
+  if (auto status = CheckSize(bytes, max_bytes, *message); !status.ok()) return status;
   grpc::ByteBuffer copy = bytes;  // references the same memory; a reader needs one it may change
   grpc::ProtoBufferReader reader(&copy);
   if (!reader.status().ok() || !message->ParseFromZeroCopyStream(&reader)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(type, ": expected a well-formed message of this type"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        message->GetDescriptor()->name(), ": expected a well-formed message of this type"));
   }
   return absl::OkStatus();
 }
 
+uint64_t CountMessages(const grpc::ByteBuffer& bytes, const pb::Message& type) {
+  grpc::ByteBuffer copy = bytes;
+  grpc::ProtoBufferReader reader(&copy);
+  if (!reader.status().ok()) return 0;
+  pb::io::CodedInputStream stream(&reader);
+  stream.SetTotalBytesLimit(std::numeric_limits<int>::max());
+  return 1 + CountInside(stream, type.GetDescriptor(), 0);
+}
+
 uint64_t CountField(const grpc::ByteBuffer& bytes, int field_number) {
-  using pb::internal::WireFormatLite;
   grpc::ByteBuffer copy = bytes;
   grpc::ProtoBufferReader reader(&copy);
   if (!reader.status().ok()) return 0;

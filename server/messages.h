@@ -12,13 +12,20 @@
 
 namespace linetree {
 
-// OK, INVALID_ARGUMENT for what is not such a message, RESOURCE_EXHAUSTED for one of more than
-// max_bytes.
+// OK, or RESOURCE_EXHAUSTED naming the type for more than max_bytes.
+absl::Status CheckSize(const grpc::ByteBuffer& bytes, size_t max_bytes,
+                       const google::protobuf::Message& type);
+
+// As CheckSize, and INVALID_ARGUMENT for what is not such a message.
 absl::Status Parse(const grpc::ByteBuffer& bytes, size_t max_bytes,
                    google::protobuf::Message* message);
 
 // How often the field stands at the top level; stops early at malformed bytes.
 uint64_t CountField(const grpc::ByteBuffer& bytes, int field_number);
+
+// How many messages parsing would build, the whole one included: two bytes may cost a hundred.
+// Stops early at malformed bytes.
+uint64_t CountMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type);
 
 grpc::ByteBuffer Serialize(const google::protobuf::Message& message);
 

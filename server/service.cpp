@@ -21,6 +21,12 @@ absl::StatusOr<grpc::ByteBuffer> Handle(const grpc::ByteBuffer& bytes, size_t ma
   return Serialize(*reply);
 }
 
+grpc::ServerUnaryReactor* Finish(grpc::CallbackServerContext* context, const absl::Status& status) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  reactor->Finish(Finished(status, context));
+  return reactor;
+}
+
 // A call that is light enough to be answered where it arrives.
 template <class Request, class Handler>
 grpc::ServerUnaryReactor* AnswerNow(grpc::CallbackServerContext* context,
@@ -28,18 +34,40 @@ grpc::ServerUnaryReactor* AnswerNow(grpc::CallbackServerContext* context,
                                     grpc::ByteBuffer* reply, const Handler& handler) {
   auto result = Handle<Request>(bytes, max_bytes, handler);
   if (result.ok()) *reply = *std::move(result);
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(Finished(result.status(), context));
-  return reactor;
+  return Finish(context, result.status());
+}
+
+// Counted before anything is built from it: a ray takes several times more memory than bytes.
+absl::Status CheckBatch(const grpc::ByteBuffer& bytes, const ServerLimits& limits) {
+  const uint64_t rays = CountField(bytes, v1::TraceRaysRequest::kRaysFieldNumber);
+  if (rays > limits.render.max_rays) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("rays: expected at most ", limits.render.max_rays, ", got ", rays));
+  }
+  return CheckSize(bytes, limits.max_batch_bytes, v1::TraceRaysRequest());
+}
+
+absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const ServerLimits& limits) {
+  const uint64_t messages = CountMessages(bytes, v1::LoadSceneRequest());
+  if (messages <= limits.max_scene_messages) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat("scene: expected at most ",
+                                                   limits.max_scene_messages,
+                                                   " messages within it, got ", messages));
 }
 
 }  // namespace
 
 grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* request, Bytes* reply) {
-  const auto work = [this, request](const CancelToken&) {
-    return Handle<v1::LoadSceneRequest>(
-        *request, backend_.limits().max_scene_bytes,
-        [this](v1::LoadSceneRequest&& r) { return backend_.LoadScene(std::move(r)); });
+  // What is refused for its size does not wait in the queue.
+  const size_t max_bytes = backend_.limits().max_scene_bytes;
+  const auto status = CheckSize(*request, max_bytes, v1::LoadSceneRequest());
+  if (!status.ok()) return Finish(context, status);
+  const auto work = [this, request, max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const auto counted = CheckMessages(*request, backend_.limits());
+    if (!counted.ok()) return counted;
+    return Handle<v1::LoadSceneRequest>(*request, max_bytes, [this](v1::LoadSceneRequest&& r) {
+      return backend_.LoadScene(std::move(r));
+    });
   };
   return QueuedCall::Start(backend_.loads(), context, reply, work, backend_.Busy("loader"));
 }
@@ -79,15 +107,11 @@ grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Service::Fly(Contex
 }
 
 grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* request, Bytes* reply) {
-  const auto work = [this, request](const CancelToken& cancel) -> absl::StatusOr<Bytes> {
-    const uint64_t rays = CountField(*request, v1::TraceRaysRequest::kRaysFieldNumber);
-    const uint64_t max_rays = backend_.limits().render.max_rays;
-    if (rays > max_rays) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat("rays: expected at most ", max_rays, ", got ", rays));
-    }
+  const auto status = CheckBatch(*request, backend_.limits());
+  if (!status.ok()) return Finish(context, status);
+  const auto work = [this, request](const CancelToken& cancel) {
     return Handle<v1::TraceRaysRequest>(
-        *request, static_cast<size_t>(backend_.limits().max_message_bytes),
+        *request, backend_.limits().max_batch_bytes,
         [&](const v1::TraceRaysRequest& r) { return backend_.TraceRays(r, cancel); });
   };
   return QueuedCall::Start(backend_.renders(), context, reply, work, backend_.Busy("render slot"));

@@ -1,5 +1,5 @@
-// LT_CHECK(condition): a bug in this program ends it, in every build type. Bad input is never a bug:
-// it comes back as absl::Status.
+// LT_CHECK(condition): a bug in this program ends it, in every build type. Bad input is never a
+// bug: it comes back as absl::Status.
 #pragma once
 
 namespace linetree {

@@ -13,9 +13,8 @@ constexpr double kMinUpSine = 1.7e-5;
 
 absl::Status FiniteField(const char* field, const Vec3d& v) {
   if (IsFinite(v)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("camera.", field, ": expected finite coordinates, got (", v.x, ", ", v.y, ", ",
-                   v.z, ")"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "camera.", field, ": expected finite coordinates, got (", v.x, ", ", v.y, ", ", v.z, ")"));
 }
 
 }  // namespace
@@ -64,8 +63,7 @@ EyeRays::EyeRays(const Camera& camera, int width, int height)
 }
 
 Ray EyeRays::Through(double x, double y) const {
-  const Vec3d direction =
-      forward_ + right_ * (2 * x / width_ - 1) + up_ * (1 - 2 * y / height_);
+  const Vec3d direction = forward_ + right_ * (2 * x / width_ - 1) + up_ * (1 - 2 * y / height_);
   return {eye_, Normalized(direction)};
 }
 

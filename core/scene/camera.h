@@ -32,8 +32,8 @@ struct CameraFrame {
   Vec3d forward, right, up;
 };
 
-// OK, or INVALID_ARGUMENT naming the field and what was expected: everything finite, eye != look_at,
-// up not parallel to the view direction, fov_deg in (0, 180).
+// OK, or INVALID_ARGUMENT naming the field and what was expected: everything finite, eye !=
+// look_at, up not parallel to the view direction, fov_deg in (0, 180).
 absl::Status ValidateCamera(const Camera& camera);
 
 // Requires ValidateCamera(camera).ok().

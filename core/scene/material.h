@@ -16,7 +16,8 @@ struct Material {
   Rgb specular;
   double exponent = 10;
   Rgb reflect;
-  // Also filters shadow rays, once for every surface crossed. An object is opaque iff this is black.
+  // Also filters shadow rays, once for every surface crossed. An object is opaque iff this is
+  // black.
   Rgb transmit;
   double ior = 1;  // index of refraction; counts where transmit is not black
   bool operator==(const Material&) const = default;

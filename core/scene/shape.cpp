@@ -15,7 +15,8 @@ Overloaded(F...) -> Overloaded<F...>;
 Box3 BoundsOf(const SphereShape& s) {
   Box3 box;
   Vec3d half;
-  for (int i = 0; i < 3; ++i) half[i] = Length(s.frame.world_from_object.row[static_cast<size_t>(i)]);
+  for (int i = 0; i < 3; ++i)
+    half[i] = Length(s.frame.world_from_object.row[static_cast<size_t>(i)]);
   box.Add(s.frame.center - half);
   box.Add(s.frame.center + half);
   return box;
@@ -79,14 +80,13 @@ Vec3d NewellNormal(const std::vector<Vec3d>& vertices) {
 }  // namespace
 
 bool IsSolid(const Shape& shape) {
-  return std::visit(Overloaded{[](const SphereShape&) { return true; },
-                               [](const BoxShape&) { return true; },
-                               [](const FrustumShape& s) { return !s.open; },
-                               [](const DiscShape&) { return false; },
-                               [](const PolygonShape&) { return false; },
-                               [](const TriangleShape&) { return false; },
-                               [](const PolyhedronShape&) { return true; }},
-                    shape);
+  return std::visit(
+      Overloaded{[](const SphereShape&) { return true; }, [](const BoxShape&) { return true; },
+                 [](const FrustumShape& s) { return !s.open; },
+                 [](const DiscShape&) { return false; }, [](const PolygonShape&) { return false; },
+                 [](const TriangleShape&) { return false; },
+                 [](const PolyhedronShape&) { return true; }},
+      shape);
 }
 
 bool IsPlanar(const Shape& shape) {

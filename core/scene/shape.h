@@ -68,8 +68,8 @@ struct DiscShape {
   Plane plane;  // world
   bool operator==(const DiscShape&) const = default;
 };
-// World space: counter-clockwise about plane.normal; edges[i] passes through vertices i and i+1, its
-// normal lies in the plane and points outwards.
+// World space: counter-clockwise about plane.normal; edges[i] passes through vertices i and i+1,
+// its normal lies in the plane and points outwards.
 struct PolygonShape {
   std::vector<Vec3d> vertices;
   Plane plane;

@@ -50,6 +50,22 @@ TEST(MessagesTest, EveryHalfMessageIsInvalidOrAShorterOne) {
   }
 }
 
+TEST(MessagesTest, MessagesAreCountedAtEveryDepth) {
+  v1::LoadSceneRequest request;
+  EXPECT_EQ(CountMessages(Serialize(request), request), 1u);
+  request.set_name("a name is none");
+  for (int i = 0; i < 5; ++i) {
+    request.mutable_scene()->add_objects()->mutable_polygon()->add_vertices()->set_x(1);
+  }
+  // The request, the scene, and five times an object, its polygon and a vertex.
+  EXPECT_EQ(CountMessages(Serialize(request), request), 17u);
+  EXPECT_EQ(CountMessages(InPieces(request.SerializeAsString(), 3), request), 17u);
+  for (size_t length = 0; length < request.SerializeAsString().size(); ++length) {
+    const auto half = InPieces(request.SerializeAsString().substr(0, length), 7);
+    EXPECT_LE(CountMessages(half, request), 17u);
+  }
+}
+
 TEST(MessagesTest, TooManyBytesAreRefusedByTheTypesName) {
   v1::TraceRaysRequest back;
   const auto status = Parse(Serialize(ThreeRays()), 10, &back);

@@ -269,6 +269,20 @@ TEST_F(Rubbish, HalfASceneIsInvalid) {
   EXPECT_THAT(status.error_message(), StartsWith("LoadSceneRequest"));
 }
 
+TEST_F(Rubbish, AScenesEmptyMessagesAreCountedToo) {
+  ServerOptions options;
+  options.limits.max_scene_messages = 1000;
+  test::RunningServer running(options);
+  v1::LoadSceneRequest request;
+  request.set_name("many");
+  for (int i = 0; i < 1000; ++i) request.mutable_scene()->add_objects();
+  grpc::ClientContext context;
+  v1::SceneInfo info;
+  const auto status = running.stub().LoadScene(&context, request, &info);
+  EXPECT_EQ(status.error_code(), StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.error_message(), StartsWith("scene: "));
+}
+
 TEST_F(Rubbish, LargeRequestsOfSmallMethodsAreRefused) {
   Request request = test::SmallFrame();
   request.set_camera_name(std::string(2 << 20, 'x'));

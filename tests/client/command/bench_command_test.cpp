@@ -31,12 +31,12 @@ TEST(BenchCommand, AccuracyCountsPixelsBeyondEpsilon) {
   TempDir dir;
   const Finished run =
       RunLinetree({"bench", "accuracy", "--scene", SourceFile("scenes/peak.textproto"), "--width",
-                   "32", "--height", "32", "--epsilons", "0.5,0.1", "--json", dir.File("a.json")});
+                   "96", "--height", "96", "--epsilons", "0.5,0.1", "--json", dir.File("a.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("of 4,096 pixels beyond epsilon"));
+  EXPECT_THAT(run.out, HasSubstr("of 36,864 pixels beyond epsilon"));
   const auto json = nlohmann::json::parse(std::ifstream(dir.File("a.json")));
   ASSERT_EQ(json.size(), 2u);
-  EXPECT_EQ(json[0]["pixels"], 1024);
+  EXPECT_EQ(json[0]["pixels"], 9216);
   EXPECT_GT(json[0]["warm"]["success"], 0);
   EXPECT_EQ(json[1]["epsilon"], 0.1);
 }
