@@ -23,6 +23,7 @@ struct BenchErrorFlags {
   SceneFlags scene{.scene = "scenes/room.textproto"};
   ViewFlags view;
   SizeFlags size;
+  JudgeKind judge = JudgeKind::kPaper;
   PathLimits limits;
   std::vector<double> epsilons = {0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.25, 0.35, 0.5, 0.75, 1};
   int repeats = 3;
@@ -42,6 +43,7 @@ absl::StatusOr<std::vector<ErrorSweepRow>> Sweep(const BenchErrorFlags& flags) {
   options.request.camera = *camera;
   options.request.width = flags.size.width;
   options.request.height = flags.size.height;
+  options.request.options.judge = flags.judge;
   options.request.options.limits = flags.limits;
   options.epsilons = flags.epsilons;
   options.repeats = flags.repeats;
@@ -99,6 +101,7 @@ void AddBenchError(CLI::App& bench, Commands& commands) {
       ->group("Scene");
   AddViewFlags(*app, flags->view);
   AddSizeFlags(*app, flags->size);
+  AddJudgeFlag(*app, flags->judge);
   AddLimitsFlags(*app, flags->limits);
   AddEpsilons(*app, flags->epsilons);
   app->add_option("--repeat", flags->repeats, "Measurements of which the median counts")

@@ -122,6 +122,19 @@ absl::StatusOr<Camera> ResolveCamera(const v1::SceneInfo& scene, const ViewFlags
   return camera;
 }
 
+void AddJudgeFlag(CLI::App& app, JudgeKind& judge) {
+  const std::map<std::string, JudgeKind> judges = {{"paper", JudgeKind::kPaper},
+                                                   {"certified", JudgeKind::kCertified}};
+  app.add_option("--judge", judge,
+                 "paper: cells interpolate radiance within epsilon, as far as its tests see;\n"
+                 "certified: cells of surfaces prove which lights reach them, and every answer is "
+                 "the classical one")
+      ->transform(CLI::CheckedTransformer(judges))
+      ->type_name("JUDGE")
+      ->default_str("paper")
+      ->group("Rendering");
+}
+
 void AddLimitsFlags(CLI::App& app, PathLimits& limits) {
   app.add_option("--max-depth", limits.max_depth, "Rays on a path, the eye ray counted")
       ->type_name("N")
@@ -139,20 +152,12 @@ void AddLimitsFlags(CLI::App& app, PathLimits& limits) {
 void AddOptionsFlags(CLI::App& app, RenderOptions& options) {
   const std::map<std::string, Mode> modes = {{"cached", Mode::kCached},
                                              {"classical", Mode::kClassical}};
-  const std::map<std::string, JudgeKind> judges = {{"paper", JudgeKind::kPaper},
-                                                   {"certified", JudgeKind::kCertified}};
   app.add_option("--mode", options.mode, "cached, or classical: trace every ray")
       ->transform(CLI::CheckedTransformer(modes))
       ->type_name("MODE")
       ->default_str("cached")
       ->group("Rendering");
-  app.add_option(
-         "--judge", options.judge,
-         "paper: interpolate radiance; certified: prove light visibility, answer as classical")
-      ->transform(CLI::CheckedTransformer(judges))
-      ->type_name("JUDGE")
-      ->default_str("paper")
-      ->group("Rendering");
+  AddJudgeFlag(app, options.judge);
   app.add_option("--epsilon", options.max_relative_error,
                  "Promised relative error against the classical tracer, per channel")
       ->type_name("E")

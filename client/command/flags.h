@@ -48,6 +48,7 @@ absl::StatusOr<Camera> ResolveCamera(const v1::SceneInfo& scene, const ViewFlags
 
 // --mode, --judge, --epsilon and the path's limits, straight into the options.
 void AddOptionsFlags(CLI::App& app, RenderOptions& options);
+void AddJudgeFlag(CLI::App& app, JudgeKind& judge);
 void AddLimitsFlags(CLI::App& app, PathLimits& limits);
 
 // -o, --layer and --stats.

@@ -15,6 +15,7 @@ Table MakeTable() {
   return Table({{"frame", Align::kRight},
                 {"ms", Align::kRight, 9},
                 {"hit rate", Align::kRight},
+                {"listed", Align::kRight},
                 {"intersect", Align::kRight, 12},
                 {"shade", Align::kRight, 11},
                 {"cells", Align::kRight, 9},
@@ -35,7 +36,7 @@ void FrameReport::Add(const Frame& frame) {
   frames_.push_back(StatsJson(stats, frame.width, frame.height));
   if (out_ == nullptr) return;
   *out_ << table_.RowLine({absl::StrCat(frames_.size()), absl::StrFormat("%.1f", stats.wall_ms),
-                           Percent(HitRate(stats)),
+                           Percent(HitRate(stats)), Percent(ListedShare(stats)),
                            Grouped(stats.base.intersect + stats.ip.intersect),
                            Grouped(stats.base.shade + stats.ip.shade), Grouped(stats.cells_tried),
                            Grouped(stats.cells_accepted), Bytes(stats.cache_bytes)})

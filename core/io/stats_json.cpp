@@ -37,6 +37,12 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
           {"cpu_ms", JsonNumber(stats.cpu_ms)}};
 }
 
+double ListedShare(const FrameStats& stats) {
+  const uint64_t shadow = stats.base.shadow + stats.ip.shadow;
+  const uint64_t listed = stats.base.listed + stats.ip.listed;
+  return shadow == 0 ? 0 : static_cast<double>(listed) / static_cast<double>(shadow);
+}
+
 double HitRate(const FrameStats& stats) {
   const uint64_t hits = stats.interpolated + stats.traced;
   return hits == 0 ? 0 : static_cast<double>(stats.interpolated) / static_cast<double>(hits);

@@ -15,6 +15,9 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height);
 // nothing was hit.
 double HitRate(const FrameStats& stats);
 
+// Share of the shadow rays that were answered without a search of the scene; 0 when there are none.
+double ListedShare(const FrameStats& stats);
+
 // Finite numbers as they are, others as null: JSON knows no infinity.
 nlohmann::json JsonNumber(double value);
 

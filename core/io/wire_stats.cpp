@@ -32,6 +32,7 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_ip_refracted_rays(stats.ip.refracted);
   message.set_ip_shadow_rays(stats.ip.shadow);
   message.set_listed_shadow_rays(all.listed);
+  message.set_ip_listed_shadow_rays(stats.ip.listed);
   message.set_intersect(all.intersect);
   message.set_shade(all.shade);
   message.set_base_intersect(stats.base.intersect);
@@ -61,13 +62,14 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
               .reflected = message.ip_reflected_rays(),
               .refracted = message.ip_refracted_rays(),
               .shadow = message.ip_shadow_rays(),
+              .listed = message.ip_listed_shadow_rays(),
               .intersect = message.ip_intersect(),
               .shade = message.ip_shade()};
   stats.base = {.eye = message.eye_rays() - stats.ip.eye,
                 .reflected = message.reflected_rays() - stats.ip.reflected,
                 .refracted = message.refracted_rays() - stats.ip.refracted,
                 .shadow = message.shadow_rays() - stats.ip.shadow,
-                .listed = message.listed_shadow_rays(),
+                .listed = message.listed_shadow_rays() - stats.ip.listed,
                 .intersect = message.base_intersect(),
                 .shade = message.base_shade()};
   for (size_t v = 0; v < kVerdictCount; ++v) {

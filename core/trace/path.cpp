@@ -178,8 +178,7 @@ class PathTracer {
       return tracer_.CastShadow(point, light, start);
     }
     ++counts_.listed;
-    const bool self_matters =
-        known.knowledge == LightKnowledge::kOn && start.side == Side::kInside;
+    const bool self_matters = known.knowledge == LightKnowledge::kOn && start.side == Side::kInside;
     if (known.knowledge == LightKnowledge::kListed || self_matters) {
       return tracer_.CastShadowAmong(known.candidates, point, light, start);
     }
