@@ -98,6 +98,6 @@ for problem in "${broken[@]}"; do
 done
 failed=$((failed + ${#broken[@]}))
 total=$((total + ${#broken[@]}))
-printf 'Passed: %s\n' "${summary[@]}"
+[ "${#summary[@]}" -gt 0 ] && printf 'Passed: %s\n' "${summary[@]}"
 echo "$(((total - failed) * 100 / total))% tests passed, $failed tests failed out of $total"
 [ "$failed" -eq 0 ]

@@ -112,6 +112,7 @@ void FlyCall::Drain() {
 
 void FlyCall::End(const absl::Status& status) {
   ended_ = true;
+  place_.reset();  // before the client hears of the end and asks for the place again
   Finish(Finished(status, context_));
 }
 

@@ -46,7 +46,6 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
   CancelToken cancel_;
-  const std::optional<Budget::Share> place_;  // none: the call was refused
 
   std::mutex mutex_;
   // Guarded by mutex_. What cannot be understood waits for its turn to be refused like the rest.
@@ -56,6 +55,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   bool working_ = false;  // a frame is being rendered or sent
   bool draining_ = false;
   bool ended_ = false;
+  std::optional<Budget::Share> place_;  // none: the call was refused, or has ended
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sending_;
   std::shared_ptr<FlyCall> self_;  // until OnDone; the queue's job holds another

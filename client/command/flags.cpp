@@ -51,6 +51,11 @@ void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags) {
                      ->type_name("HOST:PORT")
                      ->capture_default_str()
                      ->group(kGroup);
+  app.add_option("--connect-timeout", flags.connect_timeout_s, "Wait so long for the server")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str()
+      ->group(kGroup);
   auto* local = app.add_flag("--local", flags.local, "Render in this process, without a server")
                     ->excludes(server)
                     ->group(kGroup);

@@ -17,6 +17,7 @@ namespace linetree {
 // Where answers come from: a server, or a cache in this process.
 struct ConnectionFlags {
   std::string server = "127.0.0.1:50051";
+  double connect_timeout_s = 5;
   bool local = false;
   int threads = 0;                                      // --local only; 0: all hardware threads
   uint64_t memory_bytes = CacheOptions{}.memory_bytes;  // --local only

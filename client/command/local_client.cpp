@@ -122,7 +122,7 @@ absl::StatusOr<v1::GetStatsReply> LocalClient::GetStats(const std::string& scene
   reply.set_memory_budget_bytes(memory_bytes_);
   const std::chrono::duration<double> up = std::chrono::steady_clock::now() - started_;
   reply.set_uptime_s(up.count());
-  reply.set_server_version("local");
+  reply.set_server_version("(in this process)");
   return reply;
 }
 

@@ -1,5 +1,7 @@
 #include "client/command/session.h"
 
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -11,7 +13,10 @@ namespace linetree {
 
 absl::StatusOr<std::unique_ptr<Client>> Connect(const ConnectionFlags& flags) {
   if (flags.local) return std::make_unique<LocalClient>(flags.threads, flags.memory_bytes);
-  return Client::Connect(flags.server);
+  ClientOptions options;
+  options.connect_timeout_ms =
+      std::chrono::milliseconds(std::lround(1000 * flags.connect_timeout_s));
+  return Client::Connect(flags.server, options);
 }
 
 bool IsSceneFile(const std::string& scene) {

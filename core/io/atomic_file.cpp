@@ -36,10 +36,12 @@ absl::Status WriteDirectly(const std::string& path, std::string_view bytes) {
   return status;
 }
 
-// Creates a file that nobody else has, beside `path`. Its permissions are those of any new file.
+// Creates a file that nobody else has in the folder of `path`. Its permissions are those of any new
+// file. The name is short, so that names of any length that the system allows can be written.
 int CreateBeside(const std::string& path, std::string& temporary) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (int attempt = 0;; ++attempt) {
-    temporary = absl::StrCat(path, ".", getpid(), ".", attempt, ".tmp");
+    temporary = folder / absl::StrCat(".linetree.", getpid(), ".", attempt, ".tmp");
     const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0 || errno != EEXIST) return file;
   }

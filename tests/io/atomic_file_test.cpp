@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <climits>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -50,6 +51,11 @@ TEST(AtomicFile, WritesAndReplaces) {
   ASSERT_EQ(WriteFileAtomically(dir.File("a"), "second"), absl::OkStatus());
   EXPECT_EQ(Content(dir.File("a")), "second");
   EXPECT_THAT(dir.Names(), ElementsAre("a"));
+}
+
+TEST(AtomicFile, WritesNamesAsLongAsTheSystemAllows) {
+  TempDir dir;
+  EXPECT_EQ(WriteFileAtomically(dir.File(std::string(NAME_MAX, 'n')), "x"), absl::OkStatus());
 }
 
 TEST(AtomicFile, KeepsTheModeOfWhatItReplaces) {

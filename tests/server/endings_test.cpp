@@ -166,6 +166,9 @@ TEST(EndingsTest, FlightsAreCountedAndGiveTheirPlaceBack) {
   const auto client = running.NewClient({.max_attempts = 5});
   for (int round = 0; round < 3; ++round) {
     grpc::ClientContext context, refused_context;
+    for (auto* call : {&context, &refused_context}) {
+      call->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
+    }
     const auto stream = running.stub().Fly(&context);
     EXPECT_TRUE(stream->Write(Viewpoint(0)));
     EXPECT_TRUE(ReadFrame(*stream));
@@ -179,6 +182,32 @@ TEST(EndingsTest, FlightsAreCountedAndGiveTheirPlaceBack) {
     const auto status = client->Fly("ball", {request}, false, [](size_t, const Frame&) {});
     EXPECT_TRUE(status.ok()) << status;
   }
+}
+
+TEST(EndingsTest, AFlightThatSendsTooFarAheadIsNotRead) {
+  ServerOptions options;
+  options.limits.max_pending_viewpoints = 4;
+  test::RunningServer running(options);
+  grpc::ClientContext context;
+  const auto stream = running.stub().Fly(&context);
+  // While the first frame is rendered, the others are sent: many times what the buffers between
+  // here and there hold.
+  constexpr int kViewpoints = 500;
+  std::atomic<int> written = 0;
+  std::thread writer([&] {
+    v1::FlyRequest request = Viewpoint(0);
+    *request.mutable_frame() = test::EndlessFrame();
+    for (; written < kViewpoints && stream->Write(request); ++written) {
+      request = Viewpoint(1);
+      request.mutable_frame()->set_camera_name(std::string(200'000, 'x'));
+    }
+  });
+  v1::FlyReply reply;
+  EXPECT_TRUE(stream->Read(&reply));
+  EXPECT_LT(written, kViewpoints / 2);
+  context.TryCancel();
+  writer.join();
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
 }
 
 TEST(EndingsTest, DrainingEndsIdleFlights) {
