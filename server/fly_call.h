@@ -50,12 +50,12 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   std::mutex mutex_;
   // Guarded by mutex_. What cannot be understood waits for its turn to be refused like the rest.
   std::deque<absl::StatusOr<v1::FlyRequest>> pending_;
+  std::optional<Budget::Share> place_;  // none: the call was refused, or has ended
   bool reading_ = false;
   bool read_all_ = false;
   bool working_ = false;  // a frame is being rendered or sent
   bool draining_ = false;
   bool ended_ = false;
-  std::optional<Budget::Share> place_;  // none: the call was refused, or has ended
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sending_;
   std::shared_ptr<FlyCall> self_;  // until OnDone; the queue's job holds another

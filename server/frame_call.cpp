@@ -32,7 +32,7 @@ absl::Status FrameCall::Prepare(const grpc::ByteBuffer& request) {
 void FrameCall::Render() {
   auto frame = backend_.Render(*frame_, cancel_);
   if (!frame.ok()) {
-    Finish(Finished(frame.status(), context_));
+    End(Finished(frame.status(), context_));
     return;
   }
   chunks_.emplace(*std::move(frame), frame_->all_layers);
@@ -42,7 +42,7 @@ void FrameCall::Render() {
 void FrameCall::SendNext() {
   v1::FrameChunk chunk;
   if (!chunks_->Next(&chunk)) {
-    Finish(grpc::Status::OK);
+    End(grpc::Status::OK);
     return;
   }
   sending_ = Serialize(chunk);
@@ -53,8 +53,15 @@ void FrameCall::OnWriteDone(bool ok) {
   if (ok) {
     SendNext();
   } else {
-    Finish(grpc::Status::CANCELLED);
+    End(grpc::Status::CANCELLED);
   }
+}
+
+void FrameCall::End(const grpc::Status& status) {
+  // First, so that a client that has seen the end finds the memory free.
+  chunks_.reset();
+  frame_.reset();
+  Finish(status);
 }
 
 void FrameCall::OnDone() { const auto last = std::move(self_); }

@@ -32,6 +32,7 @@ class FrameCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   absl::Status Prepare(const grpc::ByteBuffer& request);
   void Render();
   void SendNext();
+  void End(const grpc::Status& status);
 
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
