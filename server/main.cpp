@@ -56,6 +56,7 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
     if (!scene.ok()) return scene.status();
     options.scenes.push_back(*std::move(scene));
   }
+  options.defaults.judge = flags.judge == "certified" ? JudgeKind::kCertified : JudgeKind::kPaper;
   options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
   return ValidateServerOptions(options);
 }

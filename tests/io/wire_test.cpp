@@ -81,11 +81,13 @@ TEST(WireTest, CamerasHaveTheDefaultsOfTheFormat) {
 TEST(WireTest, OptionsLoseNothing) {
   RenderOptions options;
   options.mode = Mode::kClassical;
+  options.judge = JudgeKind::kCertified;
   options.max_relative_error = 0.375;
   options.limits = {7, 0.125};
   const auto back = RenderOptionsFromWire(RenderOptionsToWire(options), RenderOptions(), "");
   ASSERT_TRUE(back.ok()) << back.status();
   EXPECT_EQ(back->mode, options.mode);
+  EXPECT_EQ(back->judge, options.judge);
   EXPECT_EQ(back->max_relative_error, options.max_relative_error);
   EXPECT_EQ(back->limits, options.limits);
 }
