@@ -112,7 +112,10 @@ void FlyCall::Drain() {
 
 void FlyCall::End(const absl::Status& status) {
   ended_ = true;
-  place_.reset();  // before the client hears of the end and asks for the place again
+  // Before the client hears of the end and asks for them again.
+  chunks_.reset();
+  frame_.reset();
+  place_.reset();
   Finish(Finished(status, context_));
 }
 
