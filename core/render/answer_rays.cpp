@@ -216,7 +216,7 @@ void Batch::TraceWithLists(SurfaceCache& surfaces) {
       for (size_t k = begin; k < end; ++k) {
         const uint32_t i = part[k];
         answers_[i].radiance = tracer_.RadianceFromHit(
-            hits_[i], rays_[i].origin, rays_[i].direction, options_.limits, lists, counts);
+            hits_[i], rays_[i].origin, rays_[i].direction, options_.limits, lists, nullptr, counts);
       }
     });
     const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);

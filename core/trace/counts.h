@@ -10,9 +10,12 @@ struct RayCounts {
   uint64_t reflected = 0;  // total internal reflection included
   uint64_t refracted = 0;
   uint64_t shadow = 0;
-  uint64_t listed = 0;  // of the shadow rays: answered without a search of the scene (LightLists)
-  // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray but `listed`
-  // ones), Shade a radiance computation at a point.
+  // Answered without a search of the scene: of the shadow rays (LightLists), and of the reflected
+  // and refracted ones (PathLists).
+  uint64_t listed = 0;
+  uint64_t listed_branches = 0;
+  // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray but
+  // listed ones), Shade a radiance computation at a point.
   uint64_t intersect = 0;
   uint64_t shade = 0;
 
@@ -22,6 +25,7 @@ struct RayCounts {
     refracted += o.refracted;
     shadow += o.shadow;
     listed += o.listed;
+    listed_branches += o.listed_branches;
     intersect += o.intersect;
     shade += o.shade;
     return *this;

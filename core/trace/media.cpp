@@ -46,9 +46,7 @@ Media::Media(const Scene& scene) {
 
 template <class S>
 double Media::IorAround(const Scene& scene, int object, const Vec3<S>& point) const {
-  const auto found = neighbours_.find(object);
-  if (found == neighbours_.end()) return 1;
-  for (const int32_t other : found->second) {
+  for (const int32_t other : Neighbours(object)) {
     if (ContainsStrictly(scene.objects[static_cast<size_t>(other)].shape, point)) {
       return scene.MaterialOf(other).ior;
     }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -23,6 +24,14 @@ class Media {
   // Index of refraction around transparent solid `object` of the scene at `point` of its surface.
   template <class S>
   double IorAround(const Scene& scene, int object, const Vec3<S>& point) const;
+
+  // The transparent solids, innermost first, of which IorAround takes the first that contains the
+  // point.
+  std::span<const int32_t> Neighbours(int object) const {
+    const auto found = neighbours_.find(object);
+    if (found == neighbours_.end()) return {};
+    return found->second;
+  }
 
  private:
   // Transparent solids whose bounds overlap the key's, innermost first; absent when there are none.

@@ -15,7 +15,8 @@ struct Leg {
   Branch branch = Branch::kEye;
   int depth = 1;  // rays on the path up to this one
   double weight = 1;
-  int parent = -1;  // node of the ray tree
+  int parent = -1;                 // node of the ray tree
+  const PathStep* step = nullptr;  // what is known of this ray
 };
 
 template <class S>
@@ -34,20 +35,29 @@ struct Transmission {
   std::optional<Vec3<S>> direction;  // nothing: total internal reflection
 };
 
-// kRecorded: whether `tree` is written. kListed: whether `lists` is asked for occluders.
+// kRecorded: whether `tree` is written. kListed: whether `lights` and `paths` are asked before the
+// scene is searched.
 template <class S, bool kRecorded, bool kListed = false>
 class PathTracer {
  public:
   PathTracer(const TracerOf<S>& tracer, const PathLimits& limits, RayCounts& counts, RayTree* tree,
-             const LightLists* lists = nullptr)
+             const LightLists* lights = nullptr, const PathLists* paths = nullptr)
       : tracer_(tracer),
         scene_(tracer.scene()),
         limits_(limits),
         counts_(counts),
         tree_(tree),
-        lists_(lists) {}
+        lights_(lights),
+        paths_(paths) {}
 
   RgbOf<S> Follow(const Leg<S>& leg) {
+    if constexpr (kListed) {
+      if (leg.step != nullptr && leg.step->listed) {
+        ++counts_.listed_branches;
+        return Answer(leg, tracer_.IntersectAmong(leg.step->candidates, leg.origin, leg.direction,
+                                                  leg.start));
+      }
+    }
     ++counts_.intersect;
     return Answer(leg, tracer_.Intersect(leg.origin, leg.direction, leg.start));
   }
@@ -72,29 +82,44 @@ class PathTracer {
     }
     RgbOf<S> radiance = AmbientTerm<S>(material, scene_.ambient);
     AddLights(leg, hit, material, node, radiance);
+    const bool reflects = Allows(leg, material.reflect);
+    const PathStep* step = nullptr;
+    if constexpr (kListed) {
+      if (reflects || transmission.asked_for) step = StepAt(leg, hit);
+    }
     if (total_reflection) {
-      radiance += Child(ReflectedLeg(leg, hit, leg.weight, node));
+      radiance += Child(ReflectedLeg(leg, hit, leg.weight, node, step));
       return radiance;
     }
-    if (Allows(leg, material.reflect)) {
+    if (reflects) {
       const double weight = leg.weight * MaxChannel(material.reflect);
-      radiance += material.reflect * Child(ReflectedLeg(leg, hit, weight, node));
+      radiance += material.reflect * Child(ReflectedLeg(leg, hit, weight, node, step));
     } else if (kRecorded && !IsBlack(material.reflect)) {
       RecordCutOff(Branch::kReflected, hit, node);
     }
     if (transmission.asked_for) {
       radiance += material.transmit *
-                  Child(TransmittedLeg(leg, hit, material, *transmission.direction, node));
+                  Child(TransmittedLeg(leg, hit, material, *transmission.direction, node, step));
     } else if (kRecorded && !IsBlack(material.transmit)) {
       RecordCutOff(Branch::kTransmitted, hit, node);
     }
     return radiance;
   }
 
+  // The step whose rays end at this hit: the one that led here if it knows how to go on, or else
+  // one of the object's own linetree.
+  const PathStep* StepAt(const Leg<S>& leg, const HitOf<S>& hit) const {
+    const PathStep* step = leg.step;
+    if (step != nullptr && step->EndsAt(hit) && (step->reflected != 0 || step->transmitted != 0)) {
+      return step;
+    }
+    step = paths_ != nullptr ? paths_->Find(hit, leg.direction) : nullptr;
+    return step != nullptr && step->EndsAt(hit) ? step : nullptr;
+  }
+
   // Whether a branch with coefficient k is cast.
   bool Allows(const Leg<S>& leg, const Rgb& k) const {
-    return !IsBlack(k) && leg.depth < limits_.max_depth &&
-           leg.weight * MaxChannel(k) >= limits_.min_weight;
+    return limits_.Allow(leg.depth, leg.weight, k);
   }
 
   RgbOf<S> Child(const Leg<S>& leg) {
@@ -121,18 +146,20 @@ class PathTracer {
     return transmission;
   }
 
-  Leg<S> ReflectedLeg(const Leg<S>& leg, const HitOf<S>& hit, double weight, int node) const {
+  Leg<S> ReflectedLeg(const Leg<S>& leg, const HitOf<S>& hit, double weight, int node,
+                      const PathStep* step) const {
     return {hit.point,
             Reflected(leg.direction, hit.normal),
             {hit.object, hit.face, hit.side},
             Branch::kReflected,
             leg.depth + 1,
             weight,
-            node};
+            node,
+            step != nullptr && step->reflected != 0 ? step + step->reflected : nullptr};
   }
 
   Leg<S> TransmittedLeg(const Leg<S>& leg, const HitOf<S>& hit, const Material& material,
-                        const Vec3<S>& direction, int node) const {
+                        const Vec3<S>& direction, int node, const PathStep* step) const {
     const bool into_inside = hit.side == Side::kOutside && !IsPlanar(ShapeOf(hit.object));
     const Side side = into_inside ? Side::kInside : Side::kOutside;
     return {hit.point,
@@ -141,7 +168,8 @@ class PathTracer {
             Branch::kTransmitted,
             leg.depth + 1,
             leg.weight * MaxChannel(material.transmit),
-            node};
+            node,
+            step != nullptr && step->transmitted != 0 ? step + step->transmitted : nullptr};
   }
 
   void AddLights(const Leg<S>& leg, const HitOf<S>& hit, const Material& material, int node,
@@ -149,7 +177,7 @@ class PathTracer {
     if (!UsesLights(material)) return;
     const RayStart start{hit.object, hit.face, hit.side};
     const LightList* known = nullptr;
-    if constexpr (kListed) known = lists_->Find(hit);
+    if constexpr (kListed) known = lights_->Find(hit);
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
       const Light& light = scene_.lights[i];
       const LightView<S> view = ViewOf(light, hit.point);
@@ -235,7 +263,8 @@ class PathTracer {
   const PathLimits& limits_;
   RayCounts& counts_;
   RayTree* tree_;
-  const LightLists* lists_;
+  const LightLists* lights_;
+  const PathLists* paths_;
 };
 
 // Runs fn(path_tracer) with or without a record.
@@ -276,16 +305,17 @@ RgbOf<S> TracerOf<S>::RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin
 template <class S>
 RgbOf<S> TracerOf<S>::RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin,
                                       const Vec3<S>& direction, const PathLimits& limits,
-                                      const LightLists& lists, RayCounts& counts) const {
+                                      const LightLists& lights, const PathLists* paths,
+                                      RayCounts& counts) const {
   static_assert(std::is_same_v<S, double>, "lists hold for the arithmetic of double");
   LT_CHECK(limits.max_depth >= 1 && limits.max_depth <= kMaxPathDepth);
-  PathTracer<S, false, true> path(*this, limits, counts, nullptr, &lists);
+  PathTracer<S, false, true> path(*this, limits, counts, nullptr, &lights, paths);
   return path.Answer(EyeLeg(origin, direction), hit);
 }
 
 template Rgb TracerOf<double>::RadianceFromHit(const Hit&, const Vec3d&, const Vec3d&,
                                                const PathLimits&, const LightLists&,
-                                               RayCounts&) const;
+                                               const PathLists*, RayCounts&) const;
 
 #define LINETREE_INSTANTIATE(S)                                                                   \
   template RgbOf<S> TracerOf<S>::Radiance(const Vec3<S>&, const Vec3<S>&, const PathLimits&,      \

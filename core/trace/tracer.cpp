@@ -102,27 +102,50 @@ void TracerOf<S>::ForEachAlong(const Vec3<S>& origin, const Vec3<S>& direction, 
 }
 
 template <class S>
+void TracerOf<S>::Approach(int object, const Vec3<S>& origin, const Vec3<S>& direction,
+                           const RayStart& start, S& nearest, HitOf<S>& hit) const {
+  for (const Crossing<S>& crossing :
+       RayCrossings(ShapeOf(object), object, origin, direction, start)) {
+    const bool nearer = crossing.t < nearest || (crossing.t == nearest && object < hit.object);
+    if (!nearer) continue;
+    nearest = crossing.t;
+    hit.object = object;
+    hit.face = crossing.face;
+    hit.side = crossing.side;
+    hit.first_on_line = crossing.first_on_line;
+  }
+}
+
+template <class S>
+void TracerOf<S>::Complete(const Vec3<S>& origin, const Vec3<S>& direction, const S& t,
+                           HitOf<S>& hit) const {
+  hit.t = t;
+  hit.point = origin + direction * t;
+  hit.normal = FacingNormal(ShapeOf(hit.object), hit.face, hit.point, direction);
+}
+
+template <class S>
 HitOf<S> TracerOf<S>::Intersect(const Vec3<S>& origin, const Vec3<S>& direction,
                                 const RayStart& start) const {
   HitOf<S> hit;
   S nearest = std::numeric_limits<S>::infinity();
   ForEachAlong(origin, direction, nearest, [&](int object) {
-    for (const Crossing<S>& crossing :
-         RayCrossings(ShapeOf(object), object, origin, direction, start)) {
-      const bool nearer = crossing.t < nearest || (crossing.t == nearest && object < hit.object);
-      if (!nearer) continue;
-      nearest = crossing.t;
-      hit.object = object;
-      hit.face = crossing.face;
-      hit.side = crossing.side;
-      hit.first_on_line = crossing.first_on_line;
-    }
+    Approach(object, origin, direction, start, nearest, hit);
     return true;
   });
-  if (!hit.IsHit()) return hit;
-  hit.t = nearest;
-  hit.point = origin + direction * nearest;
-  hit.normal = FacingNormal(ShapeOf(hit.object), hit.face, hit.point, direction);
+  if (hit.IsHit()) Complete(origin, direction, nearest, hit);
+  return hit;
+}
+
+template <class S>
+HitOf<S> TracerOf<S>::IntersectAmong(std::span<const int32_t> objects, const Vec3<S>& origin,
+                                     const Vec3<S>& direction, const RayStart& start) const {
+  HitOf<S> hit;
+  S nearest = std::numeric_limits<S>::infinity();
+  for (const int32_t object : objects) {
+    Approach(object, origin, direction, start, nearest, hit);
+  }
+  if (hit.IsHit()) Complete(origin, direction, nearest, hit);
   return hit;
 }
 
@@ -136,9 +159,7 @@ HitOf<S> TracerOf<S>::IntersectObjectLine(int object, const Vec3<S>& origin,
   hit.object = object;
   hit.face = first.face;
   hit.side = first.side;
-  hit.t = first.t;
-  hit.point = origin + direction * first.t;
-  hit.normal = FacingNormal(ShapeOf(object), first.face, hit.point, direction);
+  Complete(origin, direction, first.t, hit);
   return hit;
 }
 

@@ -15,6 +15,7 @@
 #include "core/trace/hit.h"
 #include "core/trace/light_lists.h"
 #include "core/trace/media.h"
+#include "core/trace/path_lists.h"
 #include "core/trace/ray_tree.h"
 
 namespace linetree {
@@ -24,6 +25,12 @@ struct PathLimits {
   int max_depth = 4;         // rays on a path, the eye ray counted; in [1, kMaxPathDepth]
   double min_weight = 0.01;  // a branch of smaller weight is not cast; in [0, 1]
   bool operator==(const PathLimits&) const = default;
+
+  // Whether a branch with coefficient k is cast from the end of a ray of the given depth (the eye
+  // ray's is 1) and weight.
+  bool Allow(int depth, double weight, const Rgb& k) const {
+    return !IsBlack(k) && depth < max_depth && weight * MaxChannel(k) >= min_weight;
+  }
 };
 inline constexpr int kMaxPathDepth = 16;
 
@@ -53,6 +60,10 @@ class TracerOf {
   // inside). Of objects met at the same t the one with the smallest index. `direction` may have any
   // length. Counts nothing; see counts.intersect.
   HitOf<S> Intersect(const Vec3<S>& origin, const Vec3<S>& direction, const RayStart& start) const;
+
+  // The same where the ray can meet nothing but the given objects: equal bits, without a search.
+  HitOf<S> IntersectAmong(std::span<const int32_t> objects, const Vec3<S>& origin,
+                          const Vec3<S>& direction, const RayStart& start) const;
 
   // The first crossing of one object by the whole line (t unbounded below), as linetrees see it:
   // the hit of a ray that comes from infinity. Not a hit when the line misses the object.
@@ -85,15 +96,22 @@ class TracerOf {
                            const PathLimits& limits, RayCounts& counts,
                            RayTree* tree = nullptr) const;
 
-  // The same bits, with `lists` asked before the scene is searched for occluders. Double only.
+  // The same bits, with `lights` asked before the scene is searched for occluders and `paths`,
+  // which may be null, before it is searched for what a branch meets. Double only.
   RgbOf<S> RadianceFromHit(const HitOf<S>& hit, const Vec3<S>& origin, const Vec3<S>& direction,
-                           const PathLimits& limits, const LightLists& lists,
-                           RayCounts& counts) const;
+                           const PathLimits& limits, const LightLists& lights,
+                           const PathLists* paths, RayCounts& counts) const;
 
   // The objects' hierarchy; null when the tracer is flat.
   const Bvh* bvh() const { return bvh_.get(); }
 
  private:
+  // Takes the crossings of one object into account; `nearest` is the smallest t so far.
+  void Approach(int object, const Vec3<S>& origin, const Vec3<S>& direction, const RayStart& start,
+                S& nearest, HitOf<S>& hit) const;
+  // Fills in what follows from the object, the face and t.
+  void Complete(const Vec3<S>& origin, const Vec3<S>& direction, const S& t, HitOf<S>& hit) const;
+
   // fn(int object) -> bool (false ends the search) for all objects that the ray may meet up to
   // t_max.
   template <class ObjectFn>

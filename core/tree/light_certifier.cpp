@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/tree/separation.h"
-#include "core/tree/shaft.h"
 
 namespace linetree {
 namespace {
@@ -14,14 +13,6 @@ Box3 BoxOf(const PatchHull& hull) {
   return box;
 }
 
-double Magnitude(const Box3& box) {
-  double largest = 0;
-  for (int i = 0; i < 3; ++i) {
-    largest = std::max({largest, std::abs(box.min[i]), std::abs(box.max[i])});
-  }
-  return largest;
-}
-
 double SquaredDistance(const Box3& box, const Vec3d& p) {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
@@ -29,31 +20,6 @@ double SquaredDistance(const Box3& box, const Vec3d& p) {
     sum += d * d;
   }
   return sum;
-}
-
-// Rays use a shape's map into object space, supports the one out of it, and the two are inverse up
-// to rounding only; a polyhedron's vertices stand for its half-spaces up to kVertexMerge.
-constexpr double kVertexMerge = 0x1p-34;
-
-const AffineFrame* FrameOf(const Shape& shape) {
-  if (const auto* s = std::get_if<SphereShape>(&shape)) return &s->frame;
-  if (const auto* s = std::get_if<BoxShape>(&shape)) return &s->frame;
-  if (const auto* s = std::get_if<FrustumShape>(&shape)) return &s->frame;
-  if (const auto* s = std::get_if<DiscShape>(&shape)) return &s->frame;
-  return nullptr;
-}
-
-double SurplusOf(const Object& object) {
-  const double size = Length(object.bounds.Extent());
-  const AffineFrame* frame = FrameOf(object.shape);
-  if (frame == nullptr) return kVertexMerge * (size + Magnitude(object.bounds));
-  double deviation = 0;
-  for (int i = 0; i < 3; ++i) {
-    Vec3d unit;
-    unit[i] = 1;
-    deviation += Length(frame->world_from_object * (frame->object_from_world * unit) - unit);
-  }
-  return 2 * deviation * size;
 }
 
 // A hidden point may be this many times as far from the light as its occluder: the widening of the
@@ -83,7 +49,7 @@ struct LightCertifier::Bundle {
     shaft_to = to;
     Box3 all = from;
     all.Add(to);
-    clearance = kClearance * (Length(all.Extent()) + Magnitude(all));
+    clearance = ClearanceOf(all);
   }
 
   int self;
@@ -96,10 +62,7 @@ struct LightCertifier::Bundle {
 };
 
 LightCertifier::LightCertifier(const Tracer& tracer)
-    : tracer_(tracer), scene_(tracer.scene()), world_(scene_.WorldBounds()) {
-  surplus_.reserve(scene_.objects.size());
-  for (const Object& object : scene_.objects) surplus_.push_back(SurplusOf(object));
-}
+    : tracer_(tracer), scene_(tracer.scene()), world_(scene_.WorldBounds()), search_(tracer) {}
 
 bool CellLights::IsDecided() const {
   return std::all_of(lights.begin(), lights.end(), [](const LightList& list) {
@@ -111,7 +74,7 @@ bool LightCertifier::MayBlock(const Bundle& bundle, int object) const {
   // Rays that leave its outside cannot meet it; for the others the tracer looks at it itself.
   if (object == bundle.self) return false;
   const Shape& shape = scene_.objects[static_cast<size_t>(object)].shape;
-  const double clearance = bundle.clearance + surplus_[static_cast<size_t>(object)];
+  const double clearance = bundle.clearance + search_.Surplus(object);
   if (bundle.source_light.kind == LightKind::kPoint) {
     return !CertainlyApart(bundle.points, shape, clearance);
   }
@@ -121,34 +84,11 @@ bool LightCertifier::MayBlock(const Bundle& bundle, int object) const {
 // Ascending; one more than kMaxCandidates at most, which says that the list is too long.
 std::vector<int32_t> LightCertifier::Candidates(const Bundle& bundle,
                                                 const LightList& inherited) const {
-  std::vector<int32_t> kept;
-  const auto consider = [&](int object) {
-    if (MayBlock(bundle, object)) kept.push_back(object);
-    return kept.size() <= kMaxCandidates;
-  };
+  const auto may_block = [&](int object) { return MayBlock(bundle, object); };
   if (inherited.knowledge == LightKnowledge::kListed) {
-    for (const int32_t object : inherited.candidates) consider(object);
-    return kept;
+    return search_.Among(inherited.candidates, may_block);
   }
-  const auto widened = [&](Box3 box) {
-    for (int i = 0; i < 3; ++i) {
-      box.min[i] -= bundle.clearance;
-      box.max[i] += bundle.clearance;
-    }
-    return box;
-  };
-  const Shaft shaft(widened(bundle.shaft_from), widened(bundle.shaft_to));
-  if (tracer_.bvh() != nullptr) {
-    tracer_.bvh()->ForEachOverlap([&](const Box3& box) { return !shaft.Misses(box); }, consider);
-  } else {
-    const int count = static_cast<int>(scene_.objects.size());
-    for (int object = 0; object < count; ++object) {
-      if (shaft.Misses(scene_.objects[static_cast<size_t>(object)].bounds)) continue;
-      if (!consider(object)) break;
-    }
-  }
-  std::sort(kept.begin(), kept.end());
-  return kept;
+  return search_.InShaft(bundle.shaft_from, bundle.shaft_to, bundle.clearance, may_block);
 }
 
 bool LightCertifier::HidesAll(const Bundle& bundle, int object) const {

@@ -14,6 +14,7 @@
 
 #include "core/trace/light_lists.h"
 #include "core/trace/tracer.h"
+#include "core/tree/candidate_search.h"
 #include "core/tree/surface_chart.h"
 
 namespace linetree {
@@ -33,13 +34,6 @@ struct CellLights {
   // Whether a smaller piece could know more.
   bool IsDecided() const;
 };
-
-// A list that is longer is not kept: the scene's hierarchy finds occluders faster.
-inline constexpr size_t kMaxCandidates = 24;
-
-// Shadow rays must clear objects by this share of the lengths involved before an object is dropped:
-// a million times the rounding of a crossing (about 2^-50), a thousandth of a pixel at the finest.
-inline constexpr double kClearance = 0x1p-30;
 
 class LightCertifier {
  public:
@@ -61,8 +55,7 @@ class LightCertifier {
   const Tracer& tracer_;
   const Scene& scene_;
   Box3 world_;
-  // By object: how far the surface that rays meet may lie outside the one whose support is taken.
-  std::vector<double> surplus_;
+  CandidateSearch search_;
 };
 
 }  // namespace linetree

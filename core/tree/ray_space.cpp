@@ -214,4 +214,35 @@ Ray ObjectChart::LineOf(int pair, const RayCoords& coords) const {
   return {center_ + ToWorld(from), Normalized(ToWorld(direction))};
 }
 
+LineForm ObjectChart::FormOf(int pair) const {
+  const int k = pair / 2, i = (k + 1) % 3, j = (k + 2) % 3;
+  const double sign = pair % 2 == 0 ? 1 : -1;
+  LineForm form;
+  form.between_planes = !planar_;
+  Vec3d from, direction;
+  if (planar_) {
+    from = {-half_.x, -half_.y, 0};
+    form.origin_by[0] = e_[0] * (2 * half_.x);
+    form.origin_by[1] = e_[1] * (2 * half_.y);
+    direction[k] = sign;
+    direction[i] = -1;
+    direction[j] = -1;
+    form.direction_by[2] = e_[static_cast<size_t>(i)] * 2.0;
+    form.direction_by[3] = e_[static_cast<size_t>(j)] * 2.0;
+  } else {
+    const double hi = half_[i] + 2 * half_[k], hj = half_[j] + 2 * half_[k];
+    from[k] = -sign * half_[k];
+    from[i] = -hi;
+    from[j] = -hj;
+    direction[k] = 2 * sign * half_[k];
+    const Vec3d along_i = e_[static_cast<size_t>(i)] * (2 * hi);
+    const Vec3d along_j = e_[static_cast<size_t>(j)] * (2 * hj);
+    form.origin_by = {along_i, along_j, Vec3d{}, Vec3d{}};
+    form.direction_by = {-along_i, -along_j, along_i, along_j};
+  }
+  form.origin = center_ + ToWorld(from);
+  form.direction = ToWorld(direction);
+  return form;
+}
+
 }  // namespace linetree

@@ -48,6 +48,16 @@ inline constexpr double kRimInset = 0x1p-40;
 // between a ray and its reconstruction (to the chart, to the plane, scaled, and back).
 inline constexpr double kLineRounding = 0x1p-50;
 
+// The lines of a pair as polynomials in their coordinates: line(x) = origin + sum x_i origin_by[i]
+// + t (direction + sum x_i direction_by[i]).
+struct LineForm {
+  Vec3d origin, direction;
+  std::array<Vec3d, 4> origin_by, direction_by;
+  // Whether directions reach from the entry plane (t = 0) to the exit plane (t = 1); otherwise the
+  // object lies in a plane and t = 0 is on it.
+  bool between_planes = false;
+};
+
 class ObjectChart {
  public:
   explicit ObjectChart(const Object& object);
@@ -62,6 +72,9 @@ class ObjectChart {
   // The line with these coordinates, through the entry plane (or the planar object's own plane),
   // with unit direction.
   Ray LineOf(int pair, const RayCoords& coords) const;
+
+  // The same lines, with directions that are not of unit length.
+  LineForm FormOf(int pair) const;
 
  private:
   Vec3d ToChart(const Vec3d& v) const { return {Dot(v, e_[0]), Dot(v, e_[1]), Dot(v, e_[2])}; }

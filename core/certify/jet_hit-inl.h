@@ -1,0 +1,316 @@
+// Where the rays of a bundle meet one face of an object: the intersection formulas in jets.
+//
+// A hit is evaluated on the face's whole surface (the plane, the quadric), whether or not all rays
+// meet it inside the face; IsContained says whether they certainly do. Formulas are those in which
+// jets stay narrow (DESIGN, section 5): the discriminant of a quadric as |q|^2 - |p x q|^2, its far
+// side as -2B/A, containment in planar faces as a polynomial instead of at the rational hit point.
+#include "core/certify/jet_shape.h"
+#include "core/jet/jet_vector-inl.h"
+#include "core/trace/hit.h"
+
+#ifndef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#define LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+
+namespace linetree::LINETREE_JETS {
+
+// Every decision about a sign keeps away from zero by this share of the lengths involved, and by
+// kDrift of what the quantity varies over the cell. The first covers the rounding of the classical
+// tracer's own arithmetic (about 2^-48 of those lengths), the second what rounding earlier on the
+// path has been blown up to by curved mirrors: a ray that is off by 2^-48 of the object's chart is
+// off by 2^-48 / edge of a cell, so by 2^-33 of the variation over the smallest cell (edge 2^-15).
+inline constexpr double kSignMargin = 0x1p-34;
+inline constexpr double kDrift = 0x1p-30;
+
+template <size_t D>
+double MarginOf(const CornerJet<D>& f, double scale) {
+  return kSignMargin * scale + kDrift * f.Variation();
+}
+template <size_t D>
+bool IsPositive(const CornerJet<D>& f, double scale) {
+  return f.lo() > MarginOf(f, scale);
+}
+template <size_t D>
+bool IsNegative(const CornerJet<D>& f, double scale) {
+  return f.hi() < -MarginOf(f, scale);
+}
+
+template <size_t D>
+struct JetRay {
+  JetVector<D> origin, direction;
+  // The bundle of a chart between two planes: directions reach from the one plane to the other, so
+  // that hits of a solid lie at 0 <= t <= 1. Otherwise directions are of unit length.
+  bool between_planes = false;
+};
+
+template <size_t D>
+struct JetHit {
+  const JetShape* shape = nullptr;
+  int face = 0;
+  Side side = Side::kOutside;
+  bool curved = false;
+  double sign = 1;  // of the facing normal against the plane's or the outward one
+  CornerJet<D> t;
+  JetVector<D> point;
+  JetVector<D> object_point;  // curved: in the object frame, on the canonical surface
+  JetVector<D> normal;        // facing, unit
+  CornerJet<D> cosine;        // -direction.normal, for the ray's direction as it is
+};
+
+template <size_t D>
+class HitEvaluator {
+ public:
+  using Jet = CornerJet<D>;
+  using Vector = JetVector<D>;
+
+  explicit HitEvaluator(const JetRay<D>& ray) : ray_(ray) {}
+
+  // The bundle's hits with the surface of one face, seen from `side`. `start_face` is the face of
+  // the same object on which the rays start, or -1 when they start elsewhere. False where the jets
+  // can't say that every ray meets it.
+  bool Evaluate(const JetShape& shape, int face, Side side, int start_face, JetHit<D>& hit) const {
+    hit.shape = &shape;
+    hit.face = face;
+    hit.side = side;
+    if (const Plane* plane = shape.PlaneOf(face)) return EvaluatePlane(*plane, hit);
+    hit.curved = true;
+    return shape.kind == JetShape::Kind::kSphere ? EvaluateSphere(start_face >= 0, hit)
+                                                 : EvaluateLateral(start_face == face, hit);
+  }
+
+  // Whether all of these hits certainly lie inside the face.
+  bool IsContained(const JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    switch (shape.kind) {
+      case JetShape::Kind::kSphere:
+        return true;
+      case JetShape::Kind::kFrustum:
+        return hit.curved ? IsBetweenCaps(hit) : IsInsideCap(hit);
+      case JetShape::Kind::kPlanes:
+        return IsInsidePlanes(shape.planes, hit);
+      case JetShape::Kind::kPolygon:
+        return IsInsidePlanes(shape.edges, hit);
+      case JetShape::Kind::kDisc:
+        return IsInsideDisc(hit);
+    }
+    return false;
+  }
+
+  // A bundle whose rays start on the plane that they meet, as in the charts of planar shapes.
+  bool EvaluateOnPlane(const JetShape& shape, JetHit<D>& hit) const {
+    hit.shape = &shape;
+    const Vec3d& n = shape.planes[0].normal;
+    Jet slope = Dot(ray_.direction, n);
+    if (IsNegative(slope, 1)) {
+      hit.sign = 1;
+    } else if (IsPositive(slope, 1)) {
+      hit.sign = -1;
+    } else {
+      return false;
+    }
+    hit.t = Jet::Constant(0);
+    hit.point = ray_.origin;
+    return SetPlaneNormal(n, slope, hit);
+  }
+
+ private:
+  bool EvaluatePlane(const Plane& plane, JetHit<D>& hit) const {
+    const Jet slope = Dot(ray_.direction, plane.normal);
+    const double scale = SlopeScale();
+    const bool thin = hit.shape->IsThin();
+    const bool against = IsNegative(slope, scale), along = IsPositive(slope, scale);
+    if (!against && !along) return false;
+    if (!thin && against != (hit.side == Side::kOutside)) return false;
+    hit.sign = against ? 1 : -1;
+    const Jet distance = Dot(ray_.origin - plane.point, plane.normal);
+    hit.t = distance * Inverse(slope) * -1.0;
+    if (!IsAhead(hit)) return false;
+    hit.point = ray_.origin + ray_.direction * hit.t;
+    return SetPlaneNormal(plane.normal, slope, hit);
+  }
+
+  bool SetPlaneNormal(const Vec3d& n, const Jet& slope, JetHit<D>& hit) const {
+    if (hit.shape->corner_normals.empty()) {
+      hit.normal = Vector::Constant(n * hit.sign);
+      hit.cosine = slope * -hit.sign;
+      return true;
+    }
+    Vector sum = Vector::Constant({});
+    for (size_t i = 0; i < 3; ++i) {
+      const Plane& opposite = hit.shape->edges[(i + 1) % 3];
+      const Jet weight =
+          Dot(hit.point - opposite.point, opposite.normal) * (1 / hit.shape->heights[i]);
+      const Vec3d& at = hit.shape->corner_normals[i];
+      sum = sum + Vector{weight * at.x, weight * at.y, weight * at.z};
+    }
+    const Jet square = LengthSquared(sum);
+    if (!(square.lo() > kSignMargin)) return false;
+    const Vector normal = sum * InverseSquareRoot(square);
+    const Jet facing = Dot(ray_.direction, normal);
+    const bool against = IsNegative(facing, SlopeScale());
+    if (!against && !IsPositive(facing, SlopeScale())) return false;
+    hit.normal = against ? normal : -normal;
+    hit.cosine = against ? -facing : facing;
+    return true;
+  }
+
+  // Lengths that hits' parameters are measured in.
+  double SlopeScale() const {
+    return ray_.between_planes
+               ? std::max({ray_.direction.x.v.Magnitude(), ray_.direction.y.v.Magnitude(),
+                           ray_.direction.z.v.Magnitude()})
+               : 1;
+  }
+  double OriginScale(const JetShape& shape) const { return shape.reach + SizeOf(ray_.origin); }
+  bool IsAhead(JetHit<D>& hit) const {
+    if (ray_.between_planes) return true;
+    return IsPositive(hit.t, OriginScale(*hit.shape));
+  }
+
+  struct Line {
+    Vector p, q;
+  };
+  Line ToObject(const AffineFrame& frame) const {
+    return {frame.object_from_world * (ray_.origin - frame.center),
+            frame.object_from_world * ray_.direction};
+  }
+  static double SizeOf(const Vector& p) {
+    return p.x.v.Magnitude() + p.y.v.Magnitude() + p.z.v.Magnitude();
+  }
+  // Object coordinates are in units of the object's size, whose rounding the world's distances set.
+  double ObjectScale(const JetShape& shape, const Line& line) const {
+    double rows = 0;
+    for (const Vec3d& row : shape.frame.object_from_world.row) {
+      rows = std::max(rows, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+    }
+    return 1 + rows * OriginScale(shape) + SizeOf(line.p);
+  }
+
+  bool EvaluateSphere(bool from_itself, JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    const Line line = ToObject(shape.frame);
+    const auto& [p, q] = line;
+    const Jet a = LengthSquared(q);
+    const Jet b = Dot(p, q);
+    const double scale = ObjectScale(shape, line);
+    const double slopes = std::sqrt(a.hi());
+    if (!(a.lo() > 0)) return false;
+    const bool entering = hit.side == Side::kOutside;
+    if (from_itself) {
+      if (entering || !IsNegative(b, scale * slopes)) return false;
+      hit.t = b * Inverse(a) * -2.0;
+      return FinishCurved(-b, p + q * hit.t, hit);
+    }
+    Jet discriminant = a - (Square(p.x * q.y - p.y * q.x) + Square(p.y * q.z - p.z * q.y) +
+                            Square(p.z * q.x - p.x * q.z));
+    // Along each coordinate of a chart between two planes it is a quadratic polynomial whose
+    // leading coefficient is the discriminant of a line in the plane of a face of the bounding box,
+    // which the sphere does not cross: not positive.
+    if (ray_.between_planes) discriminant.AssumeConcave();
+    if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * a.hi())) return false;
+    const Jet root = SquareRoot(discriminant);
+    hit.t = (entering ? -b - root : root - b) * Inverse(a);
+    if (ray_.between_planes) hit.t.AssumeWithin(0, 1);
+    if (!IsAhead(hit)) return false;
+    return FinishCurved(root, p + q * hit.t, hit);
+  }
+
+  bool EvaluateLateral(bool from_itself, JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    const Line line = ToObject(shape.frame);
+    const auto& [p, q] = line;
+    const Jet w = p.z * shape.taper + shape.base_radius;
+    const Jet slope = q.z * shape.taper;
+    const Jet a = Square(q.x) + Square(q.y) - Square(slope);
+    const Jet b = p.x * q.x + p.y * q.y - w * slope;
+    const double scale = ObjectScale(shape, line);
+    const double squares = a.v.Magnitude() + Square(q.z.v).hi;
+    if (!IsPositive(a, squares)) return false;
+    const bool entering = hit.side == Side::kOutside;
+    if (from_itself) {
+      if (entering || !IsNegative(b, scale * std::sqrt(squares))) return false;
+      hit.t = b * Inverse(a) * -2.0;
+      if (!IsAhead(hit)) return false;
+      return FinishCurved(-b, p + q * hit.t, hit);
+    }
+    const Jet discriminant = Square(p.x * slope - w * q.x) + Square(p.y * slope - w * q.y) -
+                             Square(p.x * q.y - p.y * q.x);
+    if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * squares)) return false;
+    const Jet root = SquareRoot(discriminant);
+    hit.t = (entering ? -b - root : root - b) * Inverse(a);
+    if (!IsAhead(hit)) return false;
+    return FinishCurved(root, p + q * hit.t, hit);
+  }
+
+  // `root` is the square root of the discriminant: at a hit the quadratic form's derivative along
+  // the ray, q.gradient, is -root on entry and +root on exit.
+  bool FinishCurved(const Jet& root, const Vector& on_surface, JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    hit.sign = hit.side == Side::kOutside ? 1 : -1;
+    hit.object_point = on_surface;
+    hit.point = ray_.origin + ray_.direction * hit.t;
+    Vector& m = hit.object_point;
+    if (shape.kind == JetShape::Kind::kSphere) {
+      for (Jet* c : {&m.x, &m.y, &m.z}) c->AssumeWithin(-1, 1);
+    }
+    Vector gradient = m;
+    if (shape.kind == JetShape::Kind::kFrustum) {
+      gradient.z = (m.z * shape.taper + shape.base_radius) * -shape.taper;
+    }
+    const Vector outward = MultiplyTransposed(shape.frame.object_from_world, gradient);
+    if (shape.radius > 0) {
+      hit.normal = outward * (shape.radius * hit.sign);
+      hit.cosine = root * shape.radius;
+      return true;
+    }
+    const Jet square = LengthSquared(outward);
+    if (!(square.lo() > 0)) return false;
+    const Jet inverse_length = InverseSquareRoot(square);
+    hit.normal = outward * inverse_length * hit.sign;
+    hit.cosine = root * inverse_length;
+    return true;
+  }
+
+  bool IsBetweenCaps(const JetHit<D>& hit) const {
+    const Jet& z = hit.object_point.z;
+    const double margin = MarginOf(z, ObjectScale(*hit.shape, ToObject(hit.shape->frame)));
+    return z.lo() > margin && z.hi() < 1 - margin;
+  }
+  // x^2 + y^2 - w^2 < 0 at the hit point in the object frame.
+  bool IsInsideCap(const JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
+    const double w = hit.face == 1 ? shape.base_radius : shape.base_radius + shape.taper;
+    return IsNegative(Square(p.x) + Square(p.y) + -(w * w),
+                      ObjectScale(shape, ToObject(shape.frame)));
+  }
+  bool IsInsideDisc(const JetHit<D>& hit) const {
+    const JetShape& shape = *hit.shape;
+    const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
+    return IsNegative(Square(p.x) + Square(p.y) + -1.0, ObjectScale(shape, ToObject(shape.frame)));
+  }
+
+  // With distances f, slopes f' from the hit's plane and e, e' from a side's, the hit's distance
+  // from the side is e - e' f / f': of the sign of e |f'| + e' f where f' < 0, else of e |f'| - e'
+  // f.
+  bool IsInsidePlanes(const std::vector<Plane>& sides, const JetHit<D>& hit) const {
+    const Plane* own = hit.shape->PlaneOf(hit.face);
+    const Jet slope = Dot(ray_.direction, own->normal);
+    const Jet distance = Dot(ray_.origin - own->point, own->normal);
+    const bool against = slope.hi() < 0;
+    const double scale = OriginScale(*hit.shape) * slope.v.Magnitude();
+    for (const Plane& side : sides) {
+      if (&side == own) continue;
+      const Jet e = Dot(ray_.origin - side.point, side.normal);
+      const Jet rise = Dot(ray_.direction, side.normal);
+      const Jet f = against ? rise * distance - e * slope : e * slope - rise * distance;
+      if (!IsNegative(f, scale)) return false;
+    }
+    return true;
+  }
+
+  const JetRay<D>& ray_;
+};
+
+}  // namespace linetree::LINETREE_JETS
+
+#endif

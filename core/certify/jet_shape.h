@@ -1,0 +1,42 @@
+// Shapes in the form in which bundles of rays meet them: planes in world space, and at most one
+// quadric in an object frame.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace linetree {
+
+struct JetShape {
+  enum class Kind {
+    kSphere,   // |p| = 1
+    kFrustum,  // x^2 + y^2 = w(z)^2, 0 <= z <= 1, between two planes
+    kPlanes,   // boxes and polyhedra: one plane for every face, normals outwards
+    kPolygon,  // one plane, and edges
+    kDisc,     // one plane, and x^2 + y^2 <= 1
+  };
+
+  Kind kind = Kind::kPlanes;
+  AffineFrame frame;  // kSphere, kFrustum, kDisc
+  double base_radius = 1, taper = 0;
+  bool open = false;
+  std::vector<Plane> planes;  // kFrustum: base, top; kPolygon, kDisc: the surface
+  std::vector<Plane> edges;   // kPolygon
+  // Shading normals at the vertices of a kPolygon with three, weighted by the distances from the
+  // opposite edges in units of the heights; empty for flat ones.
+  std::vector<Vec3d> corner_normals;
+  std::vector<double> heights;
+  // kSphere: the radius if the frame only scales and turns, or else 0.
+  double radius = 0;
+  // Largest coordinate of the object's bounds plus its size: what margins are relative to.
+  double reach = 0;
+
+  // The plane of a face, or null for the curved face.
+  const Plane* PlaneOf(int face) const;
+  bool IsThin() const { return kind == Kind::kPolygon || kind == Kind::kDisc; }
+};
+
+JetShape MakeJetShape(const Object& object);
+
+}  // namespace linetree

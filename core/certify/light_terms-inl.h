@@ -1,0 +1,201 @@
+// What the lights add to the radiance of a bundle's hits, in jets; formulas as in
+// core/trace/shade.h but arranged so that jets stay narrow (DESIGN, section 5): n.(L - x) is
+// constant on a plane and linear on a sphere, (n.h)^2 = (n.l + n.v)^2 / (2 + 2 l.v).
+#include "core/certify/jet_hit-inl.h"
+#include "core/certify/path_certifier.h"
+#include "core/certify/radiance_sum-inl.h"
+#include "core/certify/ray_bundle.h"
+#include "core/trace/shade.h"
+
+#ifndef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+
+namespace linetree::LINETREE_JETS {
+
+// An upright box about a cloud, two of its faces across `normal`.
+inline PatchHull HullAbout(const PointCloud& cloud, const Vec3d& normal) {
+  const Vec3d aside = std::abs(normal.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d u = Normalized(Cross(normal, aside));
+  const Vec3d axes[3] = {normal, u, Cross(normal, u)};
+  const Vec3d& origin = cloud.points[0];
+  double from[3], to[3];
+  for (size_t i = 0; i < 3; ++i) {
+    from[i] = to[i] = 0;
+    for (const Vec3d& p : cloud.points) {
+      const double along = Dot(p - origin, axes[i]);
+      from[i] = std::min(from[i], along);
+      to[i] = std::max(to[i], along);
+    }
+    // The axes are orthonormal to a few roundings.
+    const double wider = cloud.slack + 8 * kOutward * (to[i] - from[i]);
+    from[i] -= wider;
+    to[i] += wider;
+  }
+  PatchHull hull;
+  for (size_t m = 0; m < 8; ++m) {
+    Vec3d p = origin;
+    for (size_t i = 0; i < 3; ++i) p = p + axes[i] * ((m >> i & 1) != 0 ? to[i] : from[i]);
+    hull.points[m] = p;
+  }
+  return hull;
+}
+
+template <size_t D>
+class LightTerms {
+ public:
+  using Jet = CornerJet<D>;
+  using Vector = JetVector<D>;
+
+  LightTerms(const PathCertifier::Context& context, RadianceSum<D>& sum)
+      : context_(context), sum_(sum) {}
+
+  // Adds all lights at the hits of rays of unit `direction`; `colour` is the path's weight so far.
+  // kCertified, or the first reason why some light's part is not a smooth function of the ray.
+  Verdict Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
+              const PointCloud& cloud) {
+    const Scene& scene = context_.scene;
+    const Vec3d normal{(hit.normal.x.lo() + hit.normal.x.hi()) / 2,
+                       (hit.normal.y.lo() + hit.normal.y.hi()) / 2,
+                       (hit.normal.z.lo() + hit.normal.z.hi()) / 2};
+    if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
+    const CellLights lights =
+        context_.lights.Certify(object, HullAbout(cloud, Normalized(normal)), nullptr);
+    const Material& material = scene.MaterialOf(object);
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+      const Light& light = scene.lights[i];
+      if (lights.lights[i].knowledge == LightKnowledge::kOff) continue;
+      const Jet facing = Facing(hit, light);
+      const double scale = FacingScale(hit, light);
+      if (IsNegative(facing, scale)) continue;
+      Rgb filter{1, 1, 1};
+      if (!IsLit(lights.lights[i], hit, object, light, filter)) return Verdict::kBlocker;
+      if (IsBlack(filter)) continue;
+      const Rgb arriving = colour * filter * light.irradiance;
+      const bool lit = IsPositive(facing, scale);
+      // Where the light sets, the highlight breaks off.
+      if (!lit && !IsBlack(material.specular)) return Verdict::kSelfShadow;
+      if (!AddLight(hit, direction, light, material, arriving, facing, lit)) return Verdict::kPeak;
+    }
+    return Verdict::kCertified;
+  }
+
+ private:
+  // n.(L - x), or n.l for a directional light.
+  Jet Facing(const JetHit<D>& hit, const Light& light) const {
+    if (light.kind == LightKind::kDirectional) return Dot(hit.normal, light.to_light);
+    const JetShape& shape = *hit.shape;
+    if (!hit.curved && shape.corner_normals.empty()) {
+      return Jet::Constant(SignedDistance(*shape.PlaneOf(hit.face), light.position) * hit.sign);
+    }
+    if (shape.radius > 0) {
+      // On a sphere x = c + r n': n'.(L - x) = n'.(L - c) - r, n' = the object point turned.
+      const Vec3d l = shape.frame.object_from_world * (light.position - shape.frame.center);
+      return (Dot(hit.object_point, l) + -1.0) * (shape.radius * hit.sign);
+    }
+    return -Dot(hit.normal, hit.point - light.position);
+  }
+  static double FacingScale(const JetHit<D>& hit, const Light& light) {
+    if (light.kind == LightKind::kDirectional) return 1;
+    const Vec3d& l = light.position;
+    return hit.shape->reach + std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
+  }
+
+  // Whether the light certainly arrives, as what `filter` leaves of it.
+  bool IsLit(const LightList& list, const JetHit<D>& hit, int object, const Light& light,
+             Rgb& filter) const {
+    if (list.knowledge != LightKnowledge::kOn) return false;
+    if (hit.side == Side::kOutside || hit.shape->IsThin()) return true;
+    // From inside the object's own far side is in between, once, unless the light is inside too.
+    const Shape& shape = context_.scene.objects[static_cast<size_t>(object)].shape;
+    if (!IsSolid(shape)) return false;
+    if (light.kind == LightKind::kPoint) {
+      PointCloud at;
+      at.points.fill(light.position);
+      if (!IsCertainlyOutside(at, shape, context_.search.Surplus(object))) return false;
+    }
+    filter = context_.scene.MaterialOf(object).transmit;
+    return true;
+  }
+
+  bool AddLight(const JetHit<D>& hit, const Vector& direction, const Light& light,
+                const Material& material, const Rgb& arriving, const Jet& facing, bool lit) {
+    Vector to_light;
+    Jet cosine = facing, strength = Jet::Constant(1);
+    if (light.kind == LightKind::kDirectional) {
+      to_light = Vector::Constant(light.to_light);
+    } else {
+      const Vector segment = -(hit.point - light.position);
+      const Jet square = SquaredDistance(hit, light, segment);
+      if (!IsPositive(square, square.hi())) return false;
+      const Jet inverse = InverseSquareRoot(square);
+      to_light = segment * inverse;
+      cosine = facing * inverse;
+      if (light.fade_distance > 0) {
+        const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
+        strength = Inverse(Power(ratio, light.fade_power / 2) + 1.0) * 2.0;
+      }
+    }
+    cosine.AssumeWithin(-1, 1);
+    const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
+    const auto faded = [&](const Jet& f) { return fades ? f * strength : f; };
+    if (!IsBlack(material.diffuse)) {
+      sum_.Add(arriving * material.diffuse, faded(lit ? cosine : Positive(cosine)));
+    }
+    if (IsBlack(material.specular)) return true;
+    Jet highlight;
+    if (!Highlight(hit, direction, to_light, cosine, material.exponent, highlight)) return false;
+    sum_.Add(arriving * material.specular, faded(highlight));
+    return true;
+  }
+
+  static Jet SquaredDistance(const JetHit<D>& hit, const Light& light, const Vector& segment) {
+    const JetShape& shape = *hit.shape;
+    if (!(shape.radius > 0)) return LengthSquared(segment);
+    // |L - x|^2 = |L - c|^2 + r^2 - 2 (L - c).(x - c), and x - c is the object point, turned.
+    const Vec3d from_center = light.position - shape.frame.center;
+    const Vec3d l = MultiplyTransposed(shape.frame.world_from_object, from_center);
+    const double constant = LengthSquared(from_center) + shape.radius * shape.radius;
+    Jet square = Dot(hit.object_point, l) * -2.0 + constant;
+    // The two sides differ by rounding of what cancels.
+    square.slack = Above(square.slack + 32 * kOutward * constant);
+    square.v =
+        Outward(square.v.lo - 32 * kOutward * constant, square.v.hi + 32 * kOutward * constant);
+    return square;
+  }
+
+  // max(0, f): known by its range alone.
+  static Jet Positive(const Jet& f) {
+    const Pack<Jet::kCorners> zero = Pack<Jet::kCorners>::All(0);
+    Jet r;
+    r.v = {std::max(0.0, f.lo()), std::max(0.0, f.hi())};
+    r.k = Max(zero, f.k);
+    r.slack = f.slack;
+    // Not smooth: no bound on derivatives is claimed, so any range of values makes the error.
+    r.d = r.s = IntervalPack<D>::All({-kUnbounded, kUnbounded});
+    return r;
+  }
+  static constexpr double kUnbounded = 1e30;
+
+  static bool Highlight(const JetHit<D>& hit, const Vector& direction, const Vector& to_light,
+                        const Jet& cosine, double exponent, Jet& highlight) {
+    Jet along = -Dot(direction, to_light);
+    along.AssumeWithin(-1, 1);
+    const Jet denominator = along * 2.0 + 2.0;
+    if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
+    Jet square = Square(cosine + hit.cosine) * Inverse(denominator);
+    square.AssumeWithin(0, 1);
+    const double power = exponent / 2;
+    const bool smooth = power >= 2 || power == 1 || power == 0;
+    if (!smooth && !(square.lo() > kLeastDenominator)) return false;
+    highlight = Power(square, power);
+    return true;
+  }
+  static constexpr double kLeastDenominator = 0x1p-20;
+
+  const PathCertifier::Context& context_;
+  RadianceSum<D>& sum_;
+};
+
+}  // namespace linetree::LINETREE_JETS
+
+#endif

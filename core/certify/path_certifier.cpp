@@ -1,0 +1,38 @@
+#include "core/certify/path_certifier.h"
+
+#include "core/certify/path_walk-inl.h"
+
+namespace linetree {
+
+CellBox BoxOf(const CellId& cell) {
+  return {CoordsOfGrid(cell.Corner(0)), CoordsOfGrid(cell.Corner(kCellCorners - 1))};
+}
+
+PathCertifier::Context::Context(const Tracer& t)
+    : tracer(t),
+      scene(t.scene()),
+      search(t),
+      lights(t),
+      world(scene.WorldBounds()),
+      floor(RadianceFloor(scene)) {
+  shapes.reserve(scene.objects.size());
+  for (const Object& object : scene.objects) shapes.push_back(MakeJetShape(object));
+}
+
+PathCertifier::PathCertifier(const Tracer& tracer) : context_(tracer) {}
+
+CellPaths PathCertifier::Certify(int object, const ObjectChart& chart, int pair, const CellBox& box,
+                                 const PathLimits& limits, const CellPaths* parent) const {
+  Task task;
+  task.object = object;
+  task.form = chart.FormOf(pair);
+  task.box = box;
+  RayCoords middle;
+  for (size_t i = 0; i < 4; ++i) middle[i] = (box.from[i] + box.to[i]) / 2;
+  task.middle = chart.LineOf(pair, middle);
+  task.limits = limits;
+  task.parent = parent;
+  return scalar_jets::CertifyPaths(context_, task);
+}
+
+}  // namespace linetree
