@@ -17,8 +17,10 @@ struct CacheOptions {
   uint32_t min_cell_rays = 8;
 };
 
-// Share of the memory that the surface trees get; linetrees and samples get the rest.
+// Shares of the memory that the surface trees and the certified linetrees get; the linetrees of the
+// paper's judge and their samples get the rest.
 inline constexpr double kSurfaceShare = 0.25;
+inline constexpr double kPathShare = 0.25;
 
 // Corner samples only make building cheaper, so they get at most this share of the linetrees'
 // memory.

@@ -6,13 +6,12 @@
 // outside it and takes it to publish.
 #pragma once
 
-#include <atomic>
-#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <vector>
 
 #include "core/cache/parallel_loop.h"
+#include "core/cache/tree_store.h"
 #include "core/trace/light_lists.h"
 #include "core/trace/tracer.h"
 #include "core/tree/light_certifier.h"
@@ -53,22 +52,16 @@ class SurfaceCache {
  private:
   struct Work;
 
-  void PlantTrees();
   std::vector<Work> CollectUsed(double weight);
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
-  void Evict();
 
-  const Tracer& tracer_;
   const LightCertifier certifier_;
   std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;
-  std::vector<std::unique_ptr<SurfaceTree>> trees_;  // by object
-  mutable std::vector<std::atomic<bool>> wanted_;    // by object: a hit found no tree; atomic
-  uint64_t byte_size_ = 0;
-  uint64_t cells_ = 0;
+  TreeStore<SurfaceTree> store_;
   uint32_t clock_ = 1;
 };
 

@@ -1,6 +1,7 @@
 // What is certain about the rays of one 4D cell: the payload of certified linetrees.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -33,6 +34,11 @@ struct CellPaths {
   // Whether a smaller cell could know more of where the rays go.
   bool IsDecided() const { return decided; }
   bool decided = false;
+
+  // Whether it saves any search.
+  bool ListsAnything() const {
+    return std::any_of(steps.begin(), steps.end(), [](const PathStep& s) { return s.listed; });
+  }
 
   uint64_t HeapBytes() const {
     return steps.capacity() * sizeof(PathStep) + objects.capacity() * sizeof(int32_t) +

@@ -36,10 +36,9 @@ class PathWalk {
     Leg leg;
     leg.direction = direction;
     leg.middle = task_.middle.direction;
-    leg.inherited = task_.parent != nullptr && !task_.parent->steps.empty() &&
-                            task_.parent->steps[0].EndsAt(middle)
-                        ? &task_.parent->steps[0]
-                        : nullptr;
+    if (task_.parent != nullptr && !task_.parent->steps.empty()) {
+      leg.inherited = &task_.parent->steps[0];
+    }
     LeaveSurface(hit, middle, leg, 0);
     Finish();
     return std::move(paths_);
@@ -89,7 +88,10 @@ class PathWalk {
     ray.between_planes = task_.form.between_planes;
     const JetShape& shape = context_.shapes[static_cast<size_t>(task_.object)];
     const HitEvaluator<4> evaluator(ray);
-    const Jet square = LengthSquared(ray.direction);
+    Jet square = LengthSquared(ray.direction);
+    const double least = task_.form.along_axis * task_.form.along_axis * (1 - 0x1p-40);
+    square.AssumeWithin(least, std::max(least, square.hi()));
+    if (!(square.lo() > 0)) return false;
     const Jet inverse_length = InverseSquareRoot(square);
     direction = ray.direction * inverse_length;
     const bool meets = shape.IsThin()
@@ -133,7 +135,7 @@ class PathWalk {
         next.weight = leg.weight * MaxChannel(material.reflect);
         next.colour = leg.colour * material.reflect;
       }
-      next.inherited = ChildOf(leg.inherited, &PathStep::reflected);
+      next.inherited = ChildOf(leg.inherited, middle, &PathStep::reflected);
       const int32_t child = Follow(next);
       paths_.steps[step].reflected = child == 0 ? 0 : child - static_cast<int32_t>(step);
     }
@@ -156,7 +158,7 @@ class PathWalk {
     next.middle = middle_direction;
     next.weight = leg.weight * MaxChannel(material.transmit);
     next.colour = leg.colour * material.transmit;
-    next.inherited = ChildOf(leg.inherited, &PathStep::transmitted);
+    next.inherited = ChildOf(leg.inherited, middle, &PathStep::transmitted);
     const int32_t child = Follow(next);
     paths_.steps[step].transmitted = child == 0 ? 0 : child - static_cast<int32_t>(step);
   }
@@ -172,8 +174,12 @@ class PathWalk {
     next.colour = leg.colour;
     return next;
   }
-  static const PathStep* ChildOf(const PathStep* step, int32_t PathStep::*child) {
-    return step == nullptr || step->*child == 0 ? nullptr : step + step->*child;
+  // What the parent cell knows of a ray that leaves from `middle`: its steps there are those of
+  // rays that end where its own centre ray does, which may be elsewhere.
+  static const PathStep* ChildOf(const PathStep* step, const Hit& middle,
+                                 int32_t PathStep::*child) {
+    if (step == nullptr || !step->EndsAt(middle) || step->*child == 0) return nullptr;
+    return step + step->*child;
   }
 
   enum class Refraction { kRefracted, kTotal, kUnknown };
@@ -290,7 +296,13 @@ class PathWalk {
           Length(context_.world.Extent()) + Length(leg.middle_origin - context_.world.Center());
       end = CloudOf(leg.origin + leg.direction * far);
     }
-    const RayBundle bundle(context_.scene, context_.search, leg.start, CloudOf(leg.origin), end);
+    const PointCloud begin = CloudOf(leg.origin);
+    if (!begin.IsFinite() || !end.IsFinite()) {
+      paths_.decided = false;
+      Refuse(Verdict::kPeak);
+      return;
+    }
+    const RayBundle bundle(context_.scene, context_.search, leg.start, begin, end);
     std::vector<int32_t> candidates =
         bundle.Candidates(ends ? middle.object : kNoObject, inherited);
     if (!certain || !candidates.empty()) {

@@ -26,6 +26,11 @@ Box3 PointCloud::Bounds() const {
   return box;
 }
 
+bool PointCloud::IsFinite() const {
+  return std::isfinite(slack) && std::all_of(points.begin(), points.end(),
+                                             [](const Vec3d& p) { return linetree::IsFinite(p); });
+}
+
 RayBundle::RayBundle(const Scene& scene, const CandidateSearch& search, const RayStart& start,
                      const PointCloud& from, const PointCloud& to)
     : scene_(scene), search_(search), start_(start), from_(from.Bounds()), to_(to.Bounds()) {

@@ -20,6 +20,7 @@ struct PointCloud {
   double slack = 0;
 
   Box3 Bounds() const;
+  bool IsFinite() const;
 };
 
 class RayBundle {

@@ -19,6 +19,7 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
           {"refracted_rays", total.refracted},
           {"shadow_rays", total.shadow},
           {"listed_shadow_rays", total.listed},
+          {"listed_branch_rays", total.listed_branches},
           {"intersect", total.intersect},
           {"shade", total.shade},
           {"base_intersect", stats.base.intersect},
@@ -27,6 +28,8 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
           {"ip_shade", stats.ip.shade},
           {"interpolated", stats.interpolated},
           {"traced", stats.traced},
+          {"replayed", stats.replayed},
+          {"residual", stats.residual},
           {"background", stats.background},
           {"verdicts", std::move(verdicts)},
           {"cells_tried", stats.cells_tried},
@@ -38,14 +41,17 @@ nlohmann::json StatsJson(const FrameStats& stats, int width, int height) {
 }
 
 double ListedShare(const FrameStats& stats) {
-  const uint64_t shadow = stats.base.shadow + stats.ip.shadow;
-  const uint64_t listed = stats.base.listed + stats.ip.listed;
-  return shadow == 0 ? 0 : static_cast<double>(listed) / static_cast<double>(shadow);
+  RayCounts all = stats.base;
+  all += stats.ip;
+  const uint64_t rays = all.shadow + all.reflected + all.refracted;
+  const uint64_t listed = all.listed + all.listed_branches;
+  return rays == 0 ? 0 : static_cast<double>(listed) / static_cast<double>(rays);
 }
 
 double HitRate(const FrameStats& stats) {
-  const uint64_t hits = stats.interpolated + stats.traced;
-  return hits == 0 ? 0 : static_cast<double>(stats.interpolated) / static_cast<double>(hits);
+  const uint64_t covered = stats.interpolated + stats.traced;
+  const uint64_t hits = stats.interpolated + stats.replayed;
+  return covered == 0 ? 0 : static_cast<double>(hits) / static_cast<double>(covered);
 }
 
 nlohmann::json JsonNumber(double value) {

@@ -33,6 +33,7 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_ip_shadow_rays(stats.ip.shadow);
   message.set_listed_shadow_rays(all.listed);
   message.set_ip_listed_shadow_rays(stats.ip.listed);
+  message.set_listed_branch_rays(all.listed_branches);
   message.set_intersect(all.intersect);
   message.set_shade(all.shade);
   message.set_base_intersect(stats.base.intersect);
@@ -41,6 +42,8 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_ip_shade(stats.ip.shade);
   message.set_interpolated(stats.interpolated);
   message.set_traced(stats.traced);
+  message.set_replayed(stats.replayed);
+  message.set_residual(stats.residual);
   message.set_background(stats.background);
   CountsToWire(stats.verdicts, message.mutable_verdicts());
   message.set_cells_tried(stats.cells_tried);
@@ -57,6 +60,8 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
   stats.pixels = message.pixels();
   stats.interpolated = message.interpolated();
   stats.traced = message.traced();
+  stats.replayed = message.replayed();
+  stats.residual = message.residual();
   stats.background = message.background();
   stats.ip = {.eye = message.ip_eye_rays(),
               .reflected = message.ip_reflected_rays(),
@@ -70,6 +75,7 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
                 .refracted = message.refracted_rays() - stats.ip.refracted,
                 .shadow = message.shadow_rays() - stats.ip.shadow,
                 .listed = message.listed_shadow_rays() - stats.ip.listed,
+                .listed_branches = message.listed_branch_rays(),
                 .intersect = message.base_intersect(),
                 .shade = message.base_shade()};
   for (size_t v = 0; v < kVerdictCount; ++v) {
@@ -93,9 +99,14 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   stats.set_frames(totals.frames);
   stats.set_ray_batches(totals.ray_batches);
   *stats.mutable_totals() = FrameStatsToWire(totals.stats, 0, 0);
-  stats.set_cache_bytes(host.cache().ByteSize());
-  stats.set_cells(host.cache().CellCount());
-  const std::vector<Counts> cells = host.cache().CellVerdicts();
+  stats.set_cache_bytes(host.CacheBytes());
+  stats.set_cells(host.cache().CellCount() + host.surfaces().CellCount() +
+                  host.paths().CellCount());
+  std::vector<Counts> cells = host.cache().CellVerdicts();
+  const std::vector<Counts> certified = host.paths().CellVerdicts();
+  for (size_t object = 0; object < cells.size(); ++object) {
+    for (size_t v = 0; v < kVerdictCount; ++v) cells[object][v] += certified[object][v];
+  }
   for (size_t object = 0; object < cells.size(); ++object) {
     if (cells[object] == Counts{}) continue;
     v1::GetStatsReply::ObjectStats* out = stats.add_objects();

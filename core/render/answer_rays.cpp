@@ -1,6 +1,7 @@
 #include "core/render/answer_rays.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "absl/container/flat_hash_map.h"
 #include "core/math/check.h"
@@ -31,8 +32,8 @@ class Batch {
   void AnswerFromCache();
   // Traces what no cell answered.
   void TraceRest();
-  // The same, with shadow rays that ask the surface trees.
-  void TraceWithLists(SurfaceCache& surfaces);
+  // The same, with the certified trees' help, which grow on the way.
+  void TraceWithTrees(CertifiedTrees& trees);
   bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
 
  private:
@@ -50,6 +51,9 @@ class Batch {
   void LookUp(const RadianceCache::Session& session, std::vector<CellId>& unbuilt);
   // Of the unbuilt cells, those that enough rays ask for. Drops the rays of the others.
   std::vector<CellRef> ChooseCells(const std::vector<CellId>& unbuilt);
+  // Answers one ray with what the certified trees know.
+  void AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCache::Reader& paths,
+                       RayCounts& counts);
 
   const Tracer& tracer_;
   RadianceCache& cache_;
@@ -201,7 +205,31 @@ int WaveOf(uint32_t ray) {
   return mixed % 8 == 0 ? 2 : 3;
 }
 
-void Batch::TraceWithLists(SurfaceCache& surfaces) {
+void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCache::Reader& paths,
+                            RayCounts& counts) {
+  const Hit& hit = hits_[ray];
+  const Vec3d& direction = rays_[ray].direction;
+  RayAnswer& answer = answers_[ray];
+  if (options_.max_relative_error >= kMinInterpolationError) {
+    answer.verdict =
+        paths.Interpolate(hit, direction, options_.max_relative_error, answer.radiance);
+    if (answer.verdict == Verdict::kCertified) {
+      answer.source = Source::kInterpolated;
+      return;
+    }
+  }
+  RayCounts own;
+  answer.radiance = tracer_.RadianceFromHit(hit, rays_[ray].origin, direction, options_.limits,
+                                            lights, &paths, own);
+  if (own.intersect == 0) {
+    answer.source = Source::kReplayed;
+  } else if (own.listed + own.listed_branches > 0) {
+    answer.source = Source::kResidual;
+  }
+  counts += own;
+}
+
+void Batch::TraceWithTrees(CertifiedTrees& trees) {
   const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
     pool_.ParallelFor(count, body, &stats_.cpu_ms);
   };
@@ -211,16 +239,23 @@ void Batch::TraceWithLists(SurfaceCache& surfaces) {
     for (const uint32_t i : rest) {
       if (WaveOf(i) == wave) part.push_back(i);
     }
+    // The last wave has nobody to tell where rays go.
+    const bool is_last = wave == kWaves - 1;
+    std::mutex samples_mutex;
+    std::vector<PathCache::Sample> samples;
     ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
-      const SurfaceCache::Reader lists(surfaces);
-      for (size_t k = begin; k < end; ++k) {
-        const uint32_t i = part[k];
-        answers_[i].radiance = tracer_.RadianceFromHit(
-            hits_[i], rays_[i].origin, rays_[i].direction, options_.limits, lists, nullptr, counts);
+      std::vector<PathCache::Sample> own;
+      {
+        const SurfaceCache::Reader lights(trees.surfaces);
+        const PathCache::Reader paths(trees.paths, options_.limits, is_last ? nullptr : &own);
+        for (size_t k = begin; k < end; ++k) AnswerWithTrees(part[k], lights, paths, counts);
       }
+      std::lock_guard lock(samples_mutex);
+      samples.insert(samples.end(), own.begin(), own.end());
     });
     const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
-    const uint64_t certified = surfaces.Refine(weight, loop);
+    uint64_t certified = trees.surfaces.Refine(weight, loop);
+    if (!is_last) certified += trees.paths.Refine(options_.limits, samples, weight, loop);
     stats_.cells_tried += certified;
     stats_.cells_accepted += certified;
   }
@@ -248,6 +283,14 @@ void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
       case Source::kInterpolated:
         ++stats.interpolated;
         break;
+      case Source::kReplayed:
+        ++stats.replayed;
+        ++stats.traced;
+        break;
+      case Source::kResidual:
+        ++stats.residual;
+        ++stats.traced;
+        break;
       case Source::kTraced:
         ++stats.traced;
         break;
@@ -257,7 +300,7 @@ void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
 
 }  // namespace
 
-absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, SurfaceCache& surfaces,
+absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, CertifiedTrees trees,
                         const RenderOptions& options, std::span<const Ray> rays, WorkerPool& pool,
                         const CancelToken* cancel, const Progress& progress,
                         std::span<RayAnswer> answers, FrameStats& stats) {
@@ -280,13 +323,13 @@ absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, SurfaceCache
     report(0.2);
     if (interpolated && !batch.IsCancelled()) batch.AnswerFromCache();
     report(0.5);
-    if (certified && !batch.IsCancelled()) batch.TraceWithLists(surfaces);
+    if (certified && !batch.IsCancelled()) batch.TraceWithTrees(trees);
     if (!certified && !batch.IsCancelled()) batch.TraceRest();
     if (batch.IsCancelled()) return absl::CancelledError("the request was cancelled");
     CountAnswers(part, stats);
     report(1);
   }
-  stats.cache_bytes = cache.ByteSize() + surfaces.ByteSize();
+  stats.cache_bytes = cache.ByteSize() + trees.ByteSize();
   return absl::OkStatus();
 }
 

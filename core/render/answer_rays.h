@@ -6,8 +6,10 @@
 // refused go one level deeper in the next round. What no cell answers is traced. Rounds see the
 // cache only between builds, so with one client a picture does not depend on the number of threads.
 //
-// Under the certified judge every ray is traced, and shadow rays ask the surface trees first. A
-// small share of the rays goes first, to see which pieces of surface the others will need.
+// Under the certified judge a ray is interpolated where its cell of a linetree may answer, and
+// evaluated where not: shadow rays then ask the surface trees, reflected and refracted rays the
+// linetrees, before the scene is searched. A small share of the rays goes first, to see which cells
+// the others will need.
 #pragma once
 
 #include <atomic>
@@ -16,6 +18,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "core/cache/path_cache.h"
 #include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
 #include "core/render/frame.h"
@@ -51,9 +54,17 @@ using Progress = std::function<void(double)>;
 // is traced.
 inline constexpr double kMinInterpolationError = 0x1p-20;
 
+// What the certified judge remembers.
+struct CertifiedTrees {
+  SurfaceCache& surfaces;
+  PathCache& paths;
+
+  uint64_t ByteSize() const { return surfaces.ByteSize() + paths.ByteSize(); }
+};
+
 // Answers rays[i] in answers[i]; directions are of unit length. Adds to stats. CANCELLED when
 // `cancel` said so (what was built stays).
-absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, SurfaceCache& surfaces,
+absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, CertifiedTrees trees,
                         const RenderOptions& options, std::span<const Ray> rays, WorkerPool& pool,
                         const CancelToken* cancel, const Progress& progress,
                         std::span<RayAnswer> answers, FrameStats& stats);

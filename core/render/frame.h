@@ -14,13 +14,21 @@
 namespace linetree {
 
 // Where an answer came from. Values are those of the wire format.
-enum class Source : uint8_t { kBackground = 0, kInterpolated = 1, kTraced = 2 };
+enum class Source : uint8_t {
+  kBackground = 0,
+  kInterpolated = 1,
+  kTraced = 2,    // without any help of the cache
+  kReplayed = 3,  // evaluated anew, without any search of the scene but for the eye ray's hit
+  kResidual = 4,  // evaluated anew, with some searches saved
+};
 
 // Counters of one frame or batch. interpolated + traced + background == pixels.
 struct FrameStats {
   uint64_t pixels = 0;
   uint64_t interpolated = 0;
-  uint64_t traced = 0;
+  uint64_t traced = 0;    // the three sources that are evaluated anew
+  uint64_t replayed = 0;  // of these: see Source
+  uint64_t residual = 0;  // of these
   uint64_t background = 0;
   RayCounts base;                                  // to answer (eye rays included)
   RayCounts ip;                                    // to build interpolants

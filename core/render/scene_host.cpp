@@ -72,12 +72,21 @@ absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
   return Ray{ray.origin, Normalized(scaled)};
 }
 
-uint64_t SurfaceBytes(uint64_t memory_bytes) {
-  return static_cast<uint64_t>(kSurfaceShare * static_cast<double>(memory_bytes));
-}
+// How the budget is shared between the caches of a scene.
+struct MemoryShares {
+  explicit MemoryShares(uint64_t memory_bytes) {
+    const auto share = [&](double part) {
+      return static_cast<uint64_t>(part * static_cast<double>(memory_bytes));
+    };
+    surfaces = share(kSurfaceShare);
+    paths = share(kPathShare);
+    radiance = memory_bytes - surfaces - paths;
+  }
+  uint64_t surfaces, paths, radiance;
+};
 
-CacheOptions LinetreeShare(CacheOptions options) {
-  options.memory_bytes -= SurfaceBytes(options.memory_bytes);
+CacheOptions RadianceShare(CacheOptions options) {
+  options.memory_bytes = MemoryShares(options.memory_bytes).radiance;
   return options;
 }
 
@@ -88,12 +97,16 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
     : scene_(std::move(scene)),
       limits_(limits),
       tracer_(*scene_),
-      cache_(tracer_, LinetreeShare(cache_options)),
-      surfaces_(tracer_, SurfaceBytes(cache_options.memory_bytes)) {}
+      cache_(tracer_, RadianceShare(cache_options)),
+      surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
+      paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths,
+             cache_options.max_cell_depth) {}
 
 void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
-  cache_.SetMemoryBytes(memory_bytes - SurfaceBytes(memory_bytes));
-  surfaces_.SetMemoryBytes(SurfaceBytes(memory_bytes));
+  const MemoryShares shares(memory_bytes);
+  cache_.SetMemoryBytes(shares.radiance);
+  surfaces_.SetMemoryBytes(shares.surfaces);
+  paths_.SetMemoryBytes(shares.paths);
 }
 
 absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
@@ -122,8 +135,8 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
     const auto band_progress = [&](double share) {
       if (progress) progress((top + share * rows) / request.height);
     };
-    if (auto s = AnswerRays(tracer_, cache_, surfaces_, request.options, rays, pool, cancel,
-                            band_progress, answers, frame.stats);
+    if (auto s = AnswerRays(tracer_, cache_, {surfaces_, paths_}, request.options, rays, pool,
+                            cancel, band_progress, answers, frame.stats);
         !s.ok()) {
       return s;
     }
@@ -154,8 +167,8 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
   }
   RayBatch batch;
   batch.answers.resize(rays.size());
-  if (auto s = AnswerRays(tracer_, cache_, surfaces_, options, unit_rays, pool, cancel, nullptr,
-                          batch.answers, batch.stats);
+  if (auto s = AnswerRays(tracer_, cache_, {surfaces_, paths_}, options, unit_rays, pool, cancel,
+                          nullptr, batch.answers, batch.stats);
       !s.ok()) {
     return s;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/cache/path_cache.h"
 #include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
 #include "core/render/answer_rays.h"
@@ -48,9 +49,13 @@ class SceneHost {
   const Tracer& tracer() const { return tracer_; }
   RadianceCache& cache() { return cache_; }
   SurfaceCache& surfaces() { return surfaces_; }
+  PathCache& paths() { return paths_; }
 
-  // Bytes of linetrees, samples and surface trees together, and the budget that they share.
-  uint64_t CacheBytes() const { return cache_.ByteSize() + surfaces_.ByteSize(); }
+  // Bytes of both kinds of linetrees, samples and surface trees together, and the budget that they
+  // share.
+  uint64_t CacheBytes() const {
+    return cache_.ByteSize() + surfaces_.ByteSize() + paths_.ByteSize();
+  }
   void SetMemoryBytes(uint64_t memory_bytes);
 
   // INVALID_ARGUMENT or RESOURCE_EXHAUSTED for a bad request, CANCELLED when `cancel` said so.
@@ -71,6 +76,7 @@ class SceneHost {
   const Tracer tracer_;
   RadianceCache cache_;
   SurfaceCache surfaces_;
+  PathCache paths_;
   mutable std::mutex totals_mutex_;
   HostTotals totals_;  // guarded by totals_mutex_
 };

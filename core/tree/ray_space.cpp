@@ -235,6 +235,7 @@ LineForm ObjectChart::FormOf(int pair) const {
     from[i] = -hi;
     from[j] = -hj;
     direction[k] = 2 * sign * half_[k];
+    form.along_axis = 2 * half_[k];
     const Vec3d along_i = e_[static_cast<size_t>(i)] * (2 * hi);
     const Vec3d along_j = e_[static_cast<size_t>(j)] * (2 * hj);
     form.origin_by = {along_i, along_j, Vec3d{}, Vec3d{}};

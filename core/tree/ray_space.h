@@ -56,6 +56,8 @@ struct LineForm {
   // Whether directions reach from the entry plane (t = 0) to the exit plane (t = 1); otherwise the
   // object lies in a plane and t = 0 is on it.
   bool between_planes = false;
+  // The part of every direction along the pair's axis, which is the same for all.
+  double along_axis = 1;
 };
 
 class ObjectChart {

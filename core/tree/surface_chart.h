@@ -48,6 +48,11 @@ struct SurfaceCell {
     return {static_cast<uint8_t>(depth + 1), 2 * i + (static_cast<uint32_t>(child) & 1),
             2 * j + (static_cast<uint32_t>(child) >> 1 & 1)};
   }
+  // Which child of its ancestor at depth `level` leads here; level < depth.
+  int ChildAt(int level) const {
+    const int shift = depth - level - 1;
+    return static_cast<int>((i >> shift & 1) | (j >> shift & 1) << 1);
+  }
 };
 
 // u, v in [0, 1].

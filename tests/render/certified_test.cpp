@@ -1,4 +1,5 @@
-// The certified judge: every answer is the classical one, bit for bit, whatever the cache holds.
+// The certified judge: every answer is within epsilon of the classical one, and at epsilon 0 the
+// classical one, bit for bit, whatever the cache holds.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -40,8 +41,11 @@ TEST(CertifiedTest, ColdWarmAndEvictedFramesAreClassicalBitForBit) {
       EXPECT_LE(cached.stats.cache_bytes, budget);
       EXPECT_EQ(host.surfaces().ByteSize(), host.surfaces().CountBytes());
       EXPECT_EQ(cached.stats.base.shadow, classical.stats.base.shadow);
-      EXPECT_EQ(cached.stats.base.intersect + cached.stats.base.listed,
+      EXPECT_EQ(host.paths().ByteSize(), host.paths().CountBytes());
+      const RayCounts& counts = cached.stats.base;
+      EXPECT_EQ(counts.intersect + counts.listed + counts.listed_branches,
                 classical.stats.base.intersect);
+      EXPECT_EQ(cached.stats.interpolated, 0u);
     }
   }
 }
@@ -82,6 +86,61 @@ TEST(CertifiedTest, RandomScenesAreClassicalBitForBit) {
     }
     EXPECT_GT(host.surfaces().CellCount(), 10u) << "seed " << seed;
   }
+}
+
+// Mirrors and glass of all shapes, apart from each other, so that there is something to
+// interpolate.
+std::shared_ptr<const Scene> MirrorsAndGlass(uint64_t seed) {
+  test::Random random(seed);
+  auto scene = std::make_shared<Scene>();
+  scene->ambient = {1, 1, 1};
+  scene->background = {0.3, 0.4, 0.5};
+  for (int i = 0; i < 9; ++i) {
+    Material material = test::RandomMaterial(random);
+    material.ambient = {0.1, 0.1, 0.1};
+    if (i % 3 == 0) material.transmit = {0.7, 0.8, 0.6}, material.ior = random.Uniform(1.1, 1.7);
+    if (i % 3 != 0) material.transmit = {};
+    material.reflect = {0.3, 0.2, 0.4};
+    test::AddMaterial(*scene, material);
+    const auto kind = test::kShapeKinds[static_cast<size_t>(
+        random.Below(static_cast<int>(test::kShapeKinds.size())))];
+    const Vec3d center{3.0 * (i % 3 - 1), 3.0 * (i / 3 - 1), random.Uniform(-0.5, 0.5)};
+    test::AddObject(*scene, test::RandomShape(kind, random, 1, center), i);
+  }
+  scene->lights.push_back(test::PointLight(random.Direction() * 12, {0.8, 0.7, 0.9}));
+  Camera camera;
+  camera.eye = Vec3d{1, -2, 9} + random.Direction();
+  camera.look_at = {};
+  camera.up = {0, 1, 0};
+  scene->cameras = {camera};
+  return scene;
+}
+
+TEST(CertifiedTest, InterpolatedFramesAreWithinEpsilon) {
+  WorkerPool pool(2);
+  uint64_t interpolated = 0, listed = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto scene = MirrorsAndGlass(seed);
+    SceneHost host(scene);
+    const Frame classical = Render(host, Request(*scene, Mode::kClassical, 256), pool);
+    for (const double epsilon : {0.1, 0.1, 0.02, 0.0, 0.25}) {
+      FrameRequest request = Request(*scene, Mode::kCached, 256);
+      request.options.max_relative_error = epsilon;
+      const Frame cached = Render(host, request, pool);
+      interpolated += cached.stats.interpolated;
+      listed += cached.stats.base.listed_branches;
+      for (size_t i = 0; i < cached.radiance.size(); ++i) {
+        const double allowed = std::max<double>(classical.radiance[i], RadianceFloor(*scene));
+        // Frames hold floats.
+        const double rounding = epsilon > 0 ? (1 + epsilon) * 0x1p-23 : 0;
+        ASSERT_LE(std::abs(cached.radiance[i] - classical.radiance[i]),
+                  (epsilon + rounding) * allowed)
+            << "seed " << seed << " epsilon " << epsilon << " channel " << i;
+      }
+    }
+  }
+  EXPECT_GT(interpolated, 2000u);
+  EXPECT_GT(listed, 20000u);
 }
 
 TEST(CertifiedTest, ThreadsAndClientsChangeNothing) {

@@ -1,0 +1,285 @@
+#include "core/cache/path_cache.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace linetree {
+
+// The trees for one PathLimits.
+struct PathCache::Forest {
+  Forest(const Scene& scene, const PathLimits& path_limits) : limits(path_limits), store(scene) {}
+  PathLimits limits;
+  TreeStore<PathTree> store;
+  uint32_t last_used = 0;
+};
+
+// The samples that fall into one leaf.
+struct PathCache::Group {
+  PathNode* node = nullptr;
+  int32_t object = 0;
+  const CellPaths* parent = nullptr;
+  int barren_levels = 0;  // how many cells in a row around this one have saved nothing
+  std::vector<Sample> samples;
+  std::unique_ptr<const CellPaths> paths{};  // the result
+};
+
+PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
+    : tracer_(tracer), certifier_(tracer), max_depth_(max_depth), memory_bytes_(memory_bytes) {
+  const Scene& scene = tracer.scene();
+  for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
+    const Material& material = scene.MaterialOf(i);
+    branches_.push_back(!IsBlack(material.reflect) || !IsBlack(material.transmit));
+  }
+}
+
+PathCache::~PathCache() = default;
+
+PathCache::Forest* PathCache::FindForest(const PathLimits& limits) const {
+  for (const auto& forest : forests_) {
+    if (forest->limits == limits) return forest.get();
+  }
+  return nullptr;
+}
+
+PathCache::Reader::Reader(const PathCache& cache, const PathLimits& limits,
+                          std::vector<Sample>* samples)
+    : cache_(cache), samples_(samples), lock_(cache.mutex_), now_(cache.clock_) {
+  if (const Forest* forest = cache.FindForest(limits)) store_ = &forest->store;
+}
+
+template <class Fn>
+bool PathCache::Reader::ForEachKnown(const Hit& hit, const Vec3d& direction, PathCoords& at,
+                                     Fn&& visit) const {
+  const auto object = static_cast<size_t>(hit.object);
+  if (store_ == nullptr || !cache_.branches_[object]) return false;
+  const PathTree* tree = store_->Get(object);
+  if (tree == nullptr) {
+    store_->Want(object);
+    return false;
+  }
+  const auto coords = tree->CoordsOf(hit, direction);
+  if (!coords) return false;
+  at = *coords;
+  tree->cells().ForEachAround(at.pair, CellAt(at.coords, cache_.max_depth_),
+                              [&](const PathNode& node) {
+                                if (node.last_used.load(std::memory_order_relaxed) != now_) {
+                                  node.last_used.store(now_, std::memory_order_relaxed);
+                                }
+                                if (node.payload && !node.payload->steps.empty()) visit(node);
+                              });
+  return true;
+}
+
+const PathStep* PathCache::Reader::Find(const Hit& hit, const Vec3d& direction) const {
+  PathCoords at;
+  const PathStep* steps = nullptr;
+  const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
+    if (node.payload->steps[0].EndsAt(hit)) steps = node.payload->steps.data();
+  });
+  if (placed && samples_ != nullptr) samples_->push_back({hit.object, at});
+  return steps;
+}
+
+Verdict PathCache::Reader::Interpolate(const Hit& hit, const Vec3d& direction, double epsilon,
+                                       Rgb& radiance) const {
+  PathCoords at;
+  Verdict verdict = Verdict::kUntried;
+  const PathNode* best = nullptr;
+  ForEachKnown(hit, direction, at, [&](const PathNode& node) {
+    const CellPaths& paths = *node.payload;
+    verdict = paths.verdict;
+    if (verdict != Verdict::kCertified) return;
+    verdict = paths.spread <= epsilon ? Verdict::kGap : Verdict::kEpsilon;
+    if (paths.spread <= epsilon && paths.steps[0].EndsAt(hit)) best = &node;
+  });
+  if (best == nullptr) return verdict;
+  radiance = Evaluate(*best->payload->interpolant, LocalCoords(best->cell, at.coords));
+  return Verdict::kCertified;
+}
+
+PathCache::Forest& PathCache::OpenForest(const PathLimits& limits) {
+  if (Forest* forest = FindForest(limits)) return *forest;
+  if (forests_.size() >= kMaxPathForests) {
+    forests_.erase(
+        std::min_element(forests_.begin(), forests_.end(),
+                         [](const auto& a, const auto& b) { return a->last_used < b->last_used; }));
+  }
+  forests_.push_back(std::make_unique<Forest>(tracer_.scene(), limits));
+  return *forests_.back();
+}
+
+// Fills in what the larger cells around a group's leaf say.
+void PathCache::LookAround(Forest& forest, Group& group, const PathCoords& at) const {
+  const PathTree& tree = *forest.store.Get(static_cast<size_t>(group.object));
+  tree.cells().ForEachAround(at.pair, CellAt(at.coords, max_depth_), [&](const PathNode& node) {
+    if (!node.payload) return;
+    if (node.payload->steps.empty()) return;
+    if (&node != group.node) group.parent = node.payload.get();
+    group.barren_levels = node.payload->ListsAnything() ? 0 : group.barren_levels + 1;
+  });
+}
+
+std::vector<PathCache::Group> PathCache::GroupByLeaf(Forest& forest,
+                                                     std::span<const Sample> samples) const {
+  struct Placed {
+    PathNode* node;
+    const Sample* sample;
+  };
+  std::vector<Placed> placed;
+  placed.reserve(samples.size());
+  for (const Sample& sample : samples) {
+    PathTree* tree = forest.store.Get(static_cast<size_t>(sample.object));
+    if (tree == nullptr) continue;
+    const CellId deepest = CellAt(sample.at.coords, max_depth_);
+    placed.push_back({&tree->cells().Leaf(sample.at.pair, deepest), &sample});
+  }
+  // By what the cells are, not by where they lie in memory: what a tight budget keeps must not
+  // depend on that.
+  const auto key = [](const Placed& p) {
+    return std::tuple(p.sample->object, p.node->root, p.node->cell);
+  };
+  std::sort(placed.begin(), placed.end(),
+            [&](const Placed& a, const Placed& b) { return key(a) < key(b); });
+  std::vector<Group> groups;
+  for (const Placed& p : placed) {
+    if (groups.empty() || groups.back().node != p.node) {
+      groups.emplace_back();
+      groups.back().node = p.node;
+      groups.back().object = p.sample->object;
+      LookAround(forest, groups.back(), p.sample->at);
+    }
+    groups.back().samples.push_back(*p.sample);
+  }
+  return groups;
+}
+
+std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Group> groups,
+                                                  double weight, const ParallelLoop& loop) {
+  for (const Group& group : groups) {
+    group.node->uses += static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
+  }
+  loop(groups.size(), [&](size_t i) {
+    Group& group = groups[i];
+    if (group.node->payload || group.node->uses < kMinPathUses) return;
+    const ObjectChart& chart = forest.store.Get(static_cast<size_t>(group.object))->chart();
+    group.paths = std::make_unique<const CellPaths>(
+        certifier_.Certify(group.object, chart, group.node->root, BoxOf(group.node->cell),
+                           forest.limits, group.parent));
+  });
+  std::vector<Sample> next;
+  std::unique_lock lock(mutex_);
+  const uint64_t budget = BudgetOf(forest);
+  for (Group& group : groups) {
+    PathNode& node = *group.node;
+    if (node.uses < kMinPathUses) continue;
+    if (!node.payload && !forest.store.Publish(node, std::move(group.paths), budget)) continue;
+    if (node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
+    // Where dividing has not helped so far, more rays must ask for it.
+    if (node.uses < uint64_t{kMinPathDivision} << std::min(group.barren_levels, 8)) continue;
+    if (!forest.store.Divide(node, clock_, budget)) continue;
+    next.insert(next.end(), group.samples.begin(), group.samples.end());
+  }
+  return next;
+}
+
+uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
+                           const ParallelLoop& loop) {
+  std::lock_guard refining(refine_mutex_);
+  const uint64_t before = CellCount();
+  Forest* forest = nullptr;
+  std::vector<Group> groups;
+  {
+    std::unique_lock lock(mutex_);
+    ++clock_;
+    if (memory_bytes_ == 0) return 0;
+    forest = &OpenForest(limits);
+    forest->last_used = clock_;
+    forest->store.PlantWanted(BudgetOf(*forest));
+    groups = GroupByLeaf(*forest, samples);
+  }
+  while (!groups.empty()) {
+    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop);
+    groups = GroupByLeaf(*forest, next);
+  }
+  const uint64_t certified = CellCount() - before;
+  Evict();
+  return certified;
+}
+
+uint64_t PathCache::UsedBytes() const {
+  uint64_t bytes = 0;
+  for (const auto& forest : forests_) bytes += forest->store.byte_size();
+  return bytes;
+}
+
+uint64_t PathCache::BudgetOf(const Forest& forest) const {
+  const uint64_t others = UsedBytes() - forest.store.byte_size();
+  return memory_bytes_ > others ? memory_bytes_ - others : 0;
+}
+
+// From the forests that were used longest ago on.
+void PathCache::Evict() {
+  std::unique_lock lock(mutex_);
+  std::vector<Forest*> order;
+  for (const auto& forest : forests_) order.push_back(forest.get());
+  std::sort(order.begin(), order.end(),
+            [](const Forest* a, const Forest* b) { return a->last_used < b->last_used; });
+  const uint64_t target = EvictionTarget(memory_bytes_);
+  for (Forest* forest : order) {
+    const uint64_t used = UsedBytes();
+    if (used <= target) return;
+    const uint64_t excess = used - target;
+    const uint64_t held = forest->store.byte_size();
+    forest->store.Evict(held > excess ? held - excess : 0);
+  }
+}
+
+void PathCache::SetMemoryBytes(uint64_t memory_bytes) {
+  std::lock_guard refining(refine_mutex_);
+  {
+    std::unique_lock lock(mutex_);
+    memory_bytes_ = memory_bytes;
+  }
+  Evict();
+}
+
+uint64_t PathCache::ByteSize() const {
+  std::shared_lock lock(mutex_);
+  return UsedBytes();
+}
+
+uint64_t PathCache::CountBytes() const {
+  std::shared_lock lock(mutex_);
+  uint64_t bytes = 0;
+  for (const auto& forest : forests_) bytes += forest->store.CountBytes();
+  return bytes;
+}
+
+uint64_t PathCache::CellCount() const {
+  std::shared_lock lock(mutex_);
+  uint64_t cells = 0;
+  for (const auto& forest : forests_) cells += forest->store.cell_count();
+  return cells;
+}
+
+std::vector<std::array<uint64_t, kVerdictCount>> PathCache::CellVerdicts() const {
+  std::shared_lock lock(mutex_);
+  std::vector<std::array<uint64_t, kVerdictCount>> verdicts(branches_.size());
+  for (const auto& forest : forests_) {
+    forest->store.ForEachTree([&](size_t object, PathTree& tree) {
+      tree.cells().ForEach([&](PathNode& node) {
+        if (node.payload) ++verdicts[object][static_cast<size_t>(node.payload->verdict)];
+      });
+    });
+  }
+  return verdicts;
+}
+
+void PathCache::Clear() {
+  std::lock_guard refining(refine_mutex_);
+  std::unique_lock lock(mutex_);
+  forests_.clear();
+}
+
+}  // namespace linetree

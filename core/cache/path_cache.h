@@ -1,0 +1,112 @@
+// The certified linetrees of all objects of one scene that reflect or transmit, under a byte
+// budget: where branches go, and radiance that may be interpolated. All requests with the same path
+// limits share them.
+//
+// Thread safety: every method may be called from any thread. Readers share a lock; Refine certifies
+// outside it and takes it to publish.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include "core/cache/parallel_loop.h"
+#include "core/cache/tree_store.h"
+#include "core/certify/path_certifier.h"
+#include "core/certify/path_tree.h"
+
+namespace linetree {
+
+// A cell is certified when this many rays have fallen into it, of one frame or several: what that
+// costs is then less than the searches that it saves.
+inline constexpr uint32_t kMinPathUses = 64;
+// And divided when this many have: of one eye's rays a few children get most.
+inline constexpr uint32_t kMinPathDivision = 4 * kMinPathUses;
+
+// Path limits for which there are trees at the same time.
+inline constexpr size_t kMaxPathForests = 8;
+
+class PathCache {
+ public:
+  // Keeps a reference to the tracer, which must outlive the cache. Cells are at most `max_depth`
+  // deep; readers and Refine ignore objects that are only matte.
+  PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth);
+  ~PathCache();
+
+  // A ray whose cell was looked up.
+  struct Sample {
+    int32_t object = 0;
+    PathCoords at;
+  };
+
+  // Holds the lock: keep it short, a part of a frame.
+  class Reader : public PathLists {
+   public:
+    // With `samples`, every ray that is looked up is added to them; they must outlive the reader.
+    Reader(const PathCache& cache, const PathLimits& limits, std::vector<Sample>* samples);
+
+    const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
+
+    // Radiance along a ray with this hit, if its cell may answer at epsilon: then kCertified, else
+    // why not.
+    Verdict Interpolate(const Hit& hit, const Vec3d& direction, double epsilon,
+                        Rgb& radiance) const;
+
+   private:
+    // visit(const PathNode&) for the cells around a ray of which something is known, the largest
+    // first; false when the ray has no place in any tree.
+    template <class Fn>
+    bool ForEachKnown(const Hit& hit, const Vec3d& direction, PathCoords& at, Fn&& visit) const;
+
+    const PathCache& cache_;
+    std::vector<Sample>* const samples_;
+    std::shared_lock<std::shared_mutex> lock_;
+    const TreeStore<PathTree>* store_ = nullptr;  // null: no trees for these limits yet
+    uint32_t now_ = 0;
+  };
+
+  // Certifies and divides the cells of the samples where that pays; `weight` is the number of rays
+  // that one sample stands for. Returns how many cells it certified.
+  uint64_t Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
+                  const ParallelLoop& loop);
+
+  void SetMemoryBytes(uint64_t memory_bytes);
+  uint64_t ByteSize() const;
+  uint64_t CountBytes() const;
+  uint64_t CellCount() const;
+  // Cells by verdict, for every object of the scene.
+  std::vector<std::array<uint64_t, kVerdictCount>> CellVerdicts() const;
+  void Clear();
+
+ private:
+  struct Forest;
+  struct Group;
+
+  Forest* FindForest(const PathLimits& limits) const;
+  Forest& OpenForest(const PathLimits& limits);
+  void LookAround(Forest& forest, Group& group, const PathCoords& at) const;
+  std::vector<Group> GroupByLeaf(Forest& forest, std::span<const Sample> samples) const;
+  // Certifies the groups' cells and divides them; the samples that go on come back.
+  std::vector<Sample> Descend(Forest& forest, std::vector<Group> groups, double weight,
+                              const ParallelLoop& loop);
+  uint64_t UsedBytes() const;
+  // What the other forests leave of the budget.
+  uint64_t BudgetOf(const Forest& forest) const;
+  void Evict();
+
+  const Tracer& tracer_;
+  const PathCertifier certifier_;
+  const int max_depth_;
+  std::vector<bool> branches_;  // by object: whether it reflects or transmits
+  std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
+  mutable std::shared_mutex mutex_;
+  // Guarded by mutex_:
+  uint64_t memory_bytes_;
+  std::vector<std::unique_ptr<Forest>> forests_;
+  uint32_t clock_ = 1;
+};
+
+}  // namespace linetree

@@ -1,0 +1,142 @@
+// The trees of all objects of a scene, of one kind, and the bytes they hold. What surface_cache.h
+// and path_cache.h have in common; whoever owns a store guards it with a lock.
+//
+// A Tree has Node, Tree(const Object&), cells() (cell_tree.h) and CountBytes().
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace linetree {
+
+template <class Tree>
+class TreeStore {
+ public:
+  using Node = typename Tree::Node;
+
+  explicit TreeStore(const Scene& scene)
+      : scene_(scene), trees_(scene.objects.size()), wanted_(scene.objects.size()) {}
+
+  // Null when the object has no tree.
+  Tree* Get(size_t object) const { return trees_[object].get(); }
+
+  // Readers may not build; asking for a tree is all they do. May run at the same time as itself.
+  void Want(size_t object) const {
+    std::atomic<bool>& wanted = wanted_[object];
+    if (!wanted.load(std::memory_order_relaxed)) wanted.store(true, std::memory_order_relaxed);
+  }
+  // Trees for the objects that readers asked for, as far as `memory_bytes` go.
+  void PlantWanted(uint64_t memory_bytes) {
+    for (size_t object = 0; object < trees_.size(); ++object) {
+      if (!wanted_[object].exchange(false, std::memory_order_relaxed) || trees_[object]) continue;
+      auto tree = std::make_unique<Tree>(scene_.objects[object]);
+      const uint64_t bytes = tree->CountBytes();
+      if (byte_size_ + bytes > memory_bytes) return;
+      trees_[object] = std::move(tree);
+      byte_size_ += bytes;
+    }
+  }
+
+  // Puts what is known of a cell into its node; false, and nothing done, when there is no room.
+  template <class Payload>
+  bool Publish(Node& node, std::unique_ptr<const Payload> payload, uint64_t memory_bytes) {
+    const uint64_t bytes = Node::BytesOf(payload.get());
+    if (byte_size_ + bytes > memory_bytes) return false;
+    node.payload = std::move(payload);
+    byte_size_ += bytes;
+    ++cells_;
+    return true;
+  }
+  // Gives a leaf children; false when there is no room.
+  bool Divide(Node& node, uint32_t now, uint64_t memory_bytes) {
+    if (byte_size_ + sizeof(*node.children) > memory_bytes) return false;
+    node.children = std::make_unique<typename decltype(node.children)::element_type>();
+    byte_size_ += sizeof(*node.children);
+    int c = 0;
+    for (Node& child : *node.children) {
+      child.cell = node.cell.Child(c++);
+      child.root = node.root;
+      child.last_used.store(now, std::memory_order_relaxed);
+    }
+    return true;
+  }
+
+  // Takes back blocks of leaves, those used longest ago first, while the store holds more than
+  // `target` bytes.
+  void Evict(uint64_t target) {
+    while (byte_size_ > target) {
+      std::vector<std::pair<uint32_t, Node*>> victims = ParentsOfLeaves();
+      if (victims.empty()) return;
+      std::stable_sort(victims.begin(), victims.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
+      for (const auto& [used, node] : victims) {
+        if (byte_size_ <= target) break;
+        DropChildren(*node, used);
+      }
+    }
+  }
+
+  void Clear() {
+    for (auto& tree : trees_) tree.reset();
+    byte_size_ = 0;
+    cells_ = 0;
+  }
+
+  // visit(size_t object, Tree&).
+  template <class Fn>
+  void ForEachTree(Fn&& visit) const {
+    for (size_t object = 0; object < trees_.size(); ++object) {
+      if (trees_[object]) visit(object, *trees_[object]);
+    }
+  }
+
+  uint64_t byte_size() const { return byte_size_; }
+  uint64_t cell_count() const { return cells_; }
+  uint64_t CountBytes() const {
+    uint64_t bytes = 0;
+    ForEachTree([&](size_t, const Tree& tree) { bytes += tree.CountBytes(); });
+    return bytes;
+  }
+
+ private:
+  std::vector<std::pair<uint32_t, Node*>> ParentsOfLeaves() const {
+    std::vector<std::pair<uint32_t, Node*>> parents;
+    ForEachTree([&](size_t, Tree& tree) {
+      tree.cells().ForEach([&](Node& node) {
+        if (!node.children) return;
+        uint32_t used = 0;
+        for (const Node& child : *node.children) {
+          if (!child.IsLeaf()) return;
+          used = std::max(used, child.last_used.load(std::memory_order_relaxed));
+        }
+        parents.emplace_back(used, &node);
+      });
+    });
+    return parents;
+  }
+  void DropChildren(Node& node, uint32_t used) {
+    for (const Node& child : *node.children) {
+      byte_size_ -= Node::BytesOf(child.payload.get());
+      cells_ -= child.payload ? 1 : 0;
+    }
+    byte_size_ -= sizeof(*node.children);
+    node.children.reset();
+    node.last_used.store(used, std::memory_order_relaxed);
+  }
+
+  const Scene& scene_;
+  std::vector<std::unique_ptr<Tree>> trees_;       // by object
+  mutable std::vector<std::atomic<bool>> wanted_;  // by object: a reader found no tree
+  uint64_t byte_size_ = 0;
+  uint64_t cells_ = 0;
+};
+
+// A pass of eviction frees an eighth of the budget.
+inline uint64_t EvictionTarget(uint64_t memory_bytes) { return memory_bytes - memory_bytes / 8; }
+
+}  // namespace linetree
