@@ -55,7 +55,17 @@ Frame EmptyFrame(const Scene& scene, const FrameRequest& request) {
   return frame;
 }
 
-// The same ray with a direction of unit length, or the field that is wrong.
+uint64_t SurfaceBytes(uint64_t memory_bytes) {
+  return static_cast<uint64_t>(kSurfaceShare * static_cast<double>(memory_bytes));
+}
+
+CacheOptions LinetreeShare(CacheOptions options) {
+  options.memory_bytes -= SurfaceBytes(options.memory_bytes);
+  return options;
+}
+
+}  // namespace
+
 absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
   if (!IsFinite(ray.origin)) {
     return absl::InvalidArgumentError(
@@ -71,17 +81,6 @@ absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
   const Vec3d scaled{d.x / largest, d.y / largest, d.z / largest};
   return Ray{ray.origin, Normalized(scaled)};
 }
-
-uint64_t SurfaceBytes(uint64_t memory_bytes) {
-  return static_cast<uint64_t>(kSurfaceShare * static_cast<double>(memory_bytes));
-}
-
-CacheOptions LinetreeShare(CacheOptions options) {
-  options.memory_bytes -= SurfaceBytes(options.memory_bytes);
-  return options;
-}
-
-}  // namespace
 
 SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options,
                      const RenderLimits& limits)

@@ -1,6 +1,6 @@
 """Which folder may include which: data and dependencies flow one way.
 
-    core/  math -> scene -> trace -> tree -> cache -> render; io may include all of them
+    core/  math -> scene -> trace -> tree -> cache -> render -> audit; io may include all of them
     client, server include core; the server may share code with client/library, nothing else crosses
 
 Protobuf messages are known in core/io only (of core), gRPC nowhere in core.
@@ -10,7 +10,7 @@ import re
 
 from trees import sources
 
-LAYERS = ["math", "scene", "trace", "tree", "cache", "render"]
+LAYERS = ["math", "scene", "trace", "tree", "cache", "render", "audit"]
 _INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 _GRPC = re.compile(r"^grpc|\.grpc\.pb\.h$")
 _PROTOBUF = re.compile(r"^google/protobuf/|\.pb\.h$")
