@@ -21,8 +21,10 @@ constexpr double kClimbShare = 0.15;
 constexpr size_t kMaxViews = 2;
 constexpr int kFramesPerView = 2;  // cold, warm
 constexpr int kMinSide = 16, kMaxSide = 512;
-// Every climber takes so many steps.
-constexpr int kClimbSteps = 8;
+// Every climber takes so many steps, longer ones after success, shorter ones after failure, and any
+// from the shortest to the longest where nothing changes. Relative to the scene's size.
+constexpr int kClimbSteps = 24;
+constexpr double kShortestStep = 1e-7, kLongestStep = 0.1;
 // Rays of one iteration of a parallel loop.
 constexpr size_t kChunkRays = 256;
 
@@ -69,7 +71,7 @@ class Auditor {
   absl::Status AskFrames();
   absl::Status AskFrame(const Camera& camera, size_t epsilon, const Questions& questions, int side);
   absl::Status AskRays(QueryKind kind, size_t count);
-  absl::Status Climb(size_t epsilon, size_t climbers);
+  absl::Status Climb(size_t epsilon, size_t count);
 
   // `eye_rays`: asked as pixels, which are traced as they are; others as TraceRays makes them.
   Questions Trace(std::vector<Ray> rays, bool eye_rays) const;
@@ -89,12 +91,14 @@ class Auditor {
   const std::vector<Camera> views_;
   const QueryRays rays_;
   const double floor_;
-  // Where climbers may start, with the error found there, by epsilon.
-  struct Start {
+  // A ray, and the error found along it.
+  struct Climber {
     double error_over_allowed;
     Ray ray;
+    double step;
   };
-  std::vector<std::vector<Start>> starts_;
+  void Move(Climber& climber, const Ray& ray, double error_over_allowed);
+  std::vector<std::vector<Climber>> starts_;  // by epsilon
   SceneAudit audit_;
 };
 
@@ -229,30 +233,52 @@ absl::Status Auditor::AskRays(QueryKind kind, size_t count) {
     const std::vector<double> errors = Judge(kind, epsilon, questions, *answers);
     for (size_t i = 0; i < count; ++i) {
       // Without any error every ray is as good: some are kept.
-      if (errors[i] > 0 || i % 8 == 0) starts_[epsilon].push_back({errors[i], questions.rays[i]});
+      if (errors[i] > 0 || i % 8 == 0) {
+        const double step = random_.LogUniform(kShortestStep, kLongestStep);
+        starts_[epsilon].push_back({errors[i], questions.rays[i], step});
+      }
     }
   }
   return absl::OkStatus();
 }
 
-// Every climber tries one ray nearby at a time and stays where the error is no smaller.
-absl::Status Auditor::Climb(size_t epsilon, size_t climbers) {
-  std::vector<Start>& starts = starts_[epsilon];
-  climbers = std::min(climbers, starts.size());
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
+// To a ray with no smaller error; the next step depends on the success of this one.
+void Auditor::Move(Climber& climber, const Ray& ray, double error_over_allowed) {
+  const double before = climber.error_over_allowed;
+  if (error_over_allowed >= before) {
+    climber.error_over_allowed = error_over_allowed;
+    climber.ray = ray;
+  }
+  if (error_over_allowed > before) {
+    climber.step = std::min(1.5 * climber.step, kLongestStep);
+  } else if (error_over_allowed < before) {
+    climber.step = std::max(0.7 * climber.step, kShortestStep);
+  } else {
+    climber.step = random_.LogUniform(kShortestStep, kLongestStep);
+  }
+}
+
+absl::Status Auditor::Climb(size_t epsilon, size_t count) {
+  std::vector<Climber>& climbers = starts_[epsilon];
+  count = std::min(count, climbers.size());
+  // Among equals, and without any error all are, lattice rays get their turn too.
+  for (size_t i = climbers.size(); i > 1; --i) {
+    std::swap(climbers[i - 1], climbers[random_.Index(i)]);
+  }
+  std::stable_sort(climbers.begin(), climbers.end(), [](const Climber& a, const Climber& b) {
     return a.error_over_allowed > b.error_over_allowed;
   });
-  starts.resize(climbers);
-  for (int step = 0; step < kClimbSteps && climbers > 0; ++step) {
+  climbers.resize(count);
+  for (int step = 0; step < kClimbSteps && count > 0; ++step) {
     std::vector<Ray> rays;
-    for (const Start& start : starts) rays.push_back(rays_.Near(start.ray, random_));
+    for (const Climber& climber : climbers) {
+      rays.push_back(rays_.Near(climber.ray, climber.step, random_));
+    }
     const Questions questions = Trace(std::move(rays), /*eye_rays=*/false);
     const auto answers = Ask(questions, epsilon);
     if (!answers.ok()) return answers.status();
     const std::vector<double> errors = Judge(QueryKind::kClimb, epsilon, questions, *answers);
-    for (size_t i = 0; i < climbers; ++i) {
-      if (errors[i] >= starts[i].error_over_allowed) starts[i] = {errors[i], questions.rays[i]};
-    }
+    for (size_t i = 0; i < count; ++i) Move(climbers[i], questions.rays[i], errors[i]);
   }
   return absl::OkStatus();
 }

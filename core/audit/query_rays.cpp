@@ -176,10 +176,9 @@ Ray QueryRays::Lattice(RandomStream& random) const {
   }
 }
 
-Ray QueryRays::Near(const Ray& ray, RandomStream& random) const {
+Ray QueryRays::Near(const Ray& ray, double step, RandomStream& random) const {
   const Hit hit = tracer_.Intersect(ray.origin, ray.direction, RayStart{});
   const double distance = hit.IsHit() ? hit.t : size_;
-  const double step = random.LogUniform(1e-7, 0.1);
   const int what = random.Below(3);
   Vec3d origin = ray.origin;
   Vec3d target = ray.origin + ray.direction * distance;

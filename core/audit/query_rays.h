@@ -24,9 +24,9 @@ class QueryRays {
   // objects, and where the shadow of an edge falls.
   Ray Lattice(RandomStream& random) const;
 
-  // A ray close by: origin, target or both moved, by anything from a ten-millionth of the scene's
-  // size to a tenth.
-  Ray Near(const Ray& ray, RandomStream& random) const;
+  // A ray close by: its origin or target, or both, moved by `step` times the scene's size (the
+  // target by no more than `step` times its distance).
+  Ray Near(const Ray& ray, double step, RandomStream& random) const;
 
  private:
   Vec3d Eye(RandomStream& random) const;
