@@ -48,7 +48,7 @@ summary=()
 excluded_of() {
   case "$1" in
     Release) echo '^$' ;;
-    Asan | Tsan) echo '^(oracle|house)$' ;;
+    Asan | Tsan) echo '^(oracle|house|audit)$' ;;
   esac
 }
 

@@ -18,6 +18,10 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
       pool_(options.threads),
       frame_bytes_(options.limits.max_frame_bytes),
       flights_(options.limits.max_flights),
+      audit_({.share = options.audit_share, .max_waiting = options.limits.max_waiting_audits},
+             [log = log_](const Violation& violation) {
+               log->error("audit: an answer breaks its promise: {}", ToLine(violation));
+             }),
       renders_(options.render_slots, options.limits.max_waiting_renders),
       loads_(1, options.limits.max_waiting_loads) {}
 
@@ -92,21 +96,28 @@ absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneR
   return v1::UnloadSceneReply();
 }
 
+v1::GetStatsReply::SceneStats Backend::StatsOf(const NamedHost& scene) {
+  v1::GetStatsReply::SceneStats stats = SceneStatsToWire(scene.name, *scene.host);
+  *stats.mutable_audit() = AuditStatsToWire(scene.audit->values());
+  return stats;
+}
+
 absl::StatusOr<v1::GetStatsReply> Backend::GetStats(const v1::GetStatsRequest& request) const {
   v1::GetStatsReply reply;
   if (request.scene().empty()) {
     for (const NamedHost& scene : scenes_.All()) {
-      *reply.add_scenes() = SceneStatsToWire(scene.name, *scene.host);
+      *reply.add_scenes() = StatsOf(scene);
     }
   } else {
     auto scene = scenes_.Find(request.scene(), "scene");
     if (!scene.ok()) return scene.status();
-    *reply.add_scenes() = SceneStatsToWire(scene->name, *scene->host);
+    *reply.add_scenes() = StatsOf(*scene);
   }
   reply.set_memory_budget_bytes(options_.memory_bytes);
   const std::chrono::duration<double> up = std::chrono::steady_clock::now() - started_;
   reply.set_uptime_s(up.count());
   reply.set_server_version(LINETREE_VERSION);
+  reply.set_audit_share(options_.audit_share);
   return reply;
 }
 
@@ -116,8 +127,10 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
   if (!scene.ok()) return scene.status();
   auto options = RenderOptionsFromWire(request.options(), options_.defaults, "");
   if (!options.ok()) return options.status();
-  auto batch = scene->host->TraceRays(RaysFromWire(request), *options, pool_, &cancel);
+  const std::vector<Ray> rays = RaysFromWire(request);
+  const auto batch = scene->host->TraceRays(rays, *options, pool_, &cancel);
   if (!batch.ok()) return batch.status();
+  audit_.Offer({scene->name, scene->host, scene->audit}, rays, *options, *batch);
   return RayBatchToWire(*batch, scene->host->scene().version);
 }
 
@@ -136,7 +149,12 @@ absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFra
 }
 
 absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelToken& cancel) {
-  return frame.scene.host->RenderFrame(frame.request, pool_, &cancel);
+  const NamedHost& scene = frame.scene;
+  auto answer = scene.host->RenderFrame(frame.request, pool_, &cancel);
+  if (answer.ok()) {
+    audit_.Offer({scene.name, scene.host, scene.audit}, frame.request.options, *answer);
+  }
+  return answer;
 }
 
 absl::Status Backend::Busy(absl::string_view what) const {

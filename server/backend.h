@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
+#include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
@@ -53,11 +54,14 @@ class Backend {
   WorkQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
+  const SceneStore& scenes() const { return scenes_; }
+  LiveAudit& audit() { return audit_; }
   // "No room now" with a hint when to come back.
   absl::Status Busy(absl::string_view what) const;
 
  private:
   absl::StatusOr<std::shared_ptr<const Scene>> BuildFrom(v1::LoadSceneRequest request) const;
+  static v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene);
 
   const ServerOptions options_;
   const std::shared_ptr<spdlog::logger> log_;
@@ -66,6 +70,7 @@ class Backend {
   WorkerPool pool_;
   Budget frame_bytes_;
   Budget flights_;
+  LiveAudit audit_;
   // Last: their threads use all of the above.
   WorkQueue renders_;
   WorkQueue loads_;

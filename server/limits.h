@@ -42,6 +42,9 @@ struct ServerLimits {
   // Frames that are being rendered or sent, together.
   uint64_t max_frame_bytes = uint64_t{4} << 30;
 
+  // Answers that wait to be traced again by the audit.
+  size_t max_waiting_audits = 4096;
+
   // When a caller that was refused for want of room should come back.
   std::chrono::milliseconds retry_after_ms{200};
 };

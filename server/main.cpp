@@ -41,6 +41,12 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
   app.add_option("--min-weight", options.defaults.limits.min_weight,
                  "a path ends when its weight falls below this")
       ->capture_default_str();
+  app.add_option(
+         "--audit", options.audit_share,
+         "share of the answers from caches, in [0, 1], that is traced again in the background "
+         "and compared; see linetree stats")
+      ->type_name("SHARE")
+      ->capture_default_str();
   flags.drain_timeout_ms = options.drain_timeout_ms.count();
   app.add_option("--drain-timeout-ms", flags.drain_timeout_ms,
                  "how long open calls may go on after the signal to stop")

@@ -69,6 +69,9 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
     return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
                     absl::StrCat(options.memory_bytes));
   }
+  if (!(options.audit_share >= 0 && options.audit_share <= 1)) {
+    return Expected("--audit", "a number in [0, 1]", absl::StrCat(options.audit_share));
+  }
   return CheckDefaults(options.defaults);
 }
 

@@ -28,6 +28,9 @@ struct ServerOptions {
   uint64_t memory_bytes = uint64_t{1} << 30;
   // What requests get that do not say otherwise.
   RenderOptions defaults;
+  // Share of the answers from caches that are traced again, to count those that break their
+  // promise.
+  double audit_share = 0;
   // How long open calls may go on after the signal to stop.
   std::chrono::milliseconds drain_timeout_ms{10'000};
   ServerLimits limits;

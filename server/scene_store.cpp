@@ -11,28 +11,30 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
                                           std::shared_ptr<const Scene> scene, bool replace) {
   if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
   // Dies after the lock is released: a big cache takes its time.
-  std::shared_ptr<SceneHost> replaced;
+  NamedHost replaced;
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
   if (found != hosts_.end()) {
-    if (found->second->scene().version == scene->version) return NamedHost{name, found->second};
+    const SceneVersion& version = found->second.host->scene().version;
+    if (version == scene->version) return found->second;
     if (!replace) {
-      return absl::AlreadyExistsError(
-          absl::StrCat("name: ", Quoted(name), " holds other content (scene version ",
-                       found->second->scene().version, "); set replace to take its place"));
+      return absl::AlreadyExistsError(absl::StrCat("name: ", Quoted(name),
+                                                   " holds other content (scene version ", version,
+                                                   "); set replace to take its place"));
     }
   }
   if (auto status = CheckRoom(found, *scene); !status.ok()) return status;
   auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
   if (found != hosts_.end()) replaced = std::move(found->second);
-  hosts_[name] = host;
+  const NamedHost added{name, std::move(host), std::make_shared<AuditCounts>()};
+  hosts_[name] = added;
   ShareMemory();
-  return NamedHost{name, std::move(host)};
+  return added;
 }
 
 void SceneStore::ShareMemory() {
   for (const auto& [name, host] : hosts_) {
-    host->SetMemoryBytes(limits_.memory_bytes / hosts_.size());
+    host.host->SetMemoryBytes(limits_.memory_bytes / hosts_.size());
   }
 }
 
@@ -43,7 +45,7 @@ absl::Status SceneStore::CheckRoom(const Hosts::const_iterator& replaced,
   for (auto it = hosts_.begin(); it != hosts_.end(); ++it) {
     if (it == replaced) continue;
     ++scenes;
-    objects += it->second->scene().objects.size();
+    objects += it->second.host->scene().objects.size();
   }
   if (scenes > limits_.max_scenes) {
     return absl::ResourceExhaustedError(
@@ -61,7 +63,7 @@ absl::StatusOr<NamedHost> SceneStore::Find(const std::string& name, absl::string
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
   if (found == hosts_.end()) return Unknown(name, path);
-  return NamedHost{name, found->second};
+  return found->second;
 }
 
 absl::Status SceneStore::Unknown(const std::string& name, absl::string_view path) const {
@@ -72,13 +74,13 @@ absl::Status SceneStore::Unknown(const std::string& name, absl::string_view path
 std::vector<NamedHost> SceneStore::All() const {
   const std::lock_guard lock(mutex_);
   std::vector<NamedHost> all;
-  for (const auto& [name, host] : hosts_) all.push_back({name, host});
+  for (const auto& [name, host] : hosts_) all.push_back(host);
   return all;
 }
 
 absl::Status SceneStore::Remove(const std::string& name, absl::string_view path) {
   if (auto status = ValidateSceneName(name, path); !status.ok()) return status;
-  std::shared_ptr<SceneHost> removed;  // dies after the lock is released
+  NamedHost removed;  // dies after the lock is released
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
   if (found == hosts_.end()) return Unknown(name, path);

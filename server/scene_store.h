@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
 
 namespace linetree {
@@ -19,6 +20,7 @@ namespace linetree {
 struct NamedHost {
   std::string name;
   std::shared_ptr<SceneHost> host;
+  std::shared_ptr<AuditCounts> audit;  // of this host's answers
 };
 
 class SceneStore {
@@ -45,7 +47,7 @@ class SceneStore {
   absl::Status Remove(const std::string& name, absl::string_view path);
 
  private:
-  using Hosts = std::map<std::string, std::shared_ptr<SceneHost>>;
+  using Hosts = std::map<std::string, NamedHost>;
 
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
   void ShareMemory();  // needs mutex_

@@ -7,6 +7,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   CLI::App* app = parent.add_subcommand("bench", "Measurements of accuracy and speed");
   app->require_subcommand(1);
   AddBenchAccuracy(*app, commands);
+  AddBenchAudit(*app, commands);
   AddBenchError(*app, commands);
   AddBenchPaper(*app, commands);
 }

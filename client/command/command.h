@@ -38,6 +38,7 @@ void AddLoad(CLI::App& parent, Commands& commands);
 // `bench`: one command for each measurement.
 void AddBench(CLI::App& parent, Commands& commands);
 void AddBenchAccuracy(CLI::App& bench, Commands& commands);
+void AddBenchAudit(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 

@@ -38,7 +38,12 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
           {"totals", StatsJson(FrameStatsFromWire(scene.totals()), 0, 0)},
           {"cache_bytes", scene.cache_bytes()},
           {"cells", scene.cells()},
-          {"objects", std::move(objects)}};
+          {"objects", std::move(objects)},
+          {"audit",
+           {{"checked", scene.audit().checked()},
+            {"violations", scene.audit().violations()},
+            {"dropped", scene.audit().dropped()},
+            {"max_error_over_allowed", JsonNumber(scene.audit().max_error_over_allowed())}}}};
 }
 
 nlohmann::json ReplyJson(const v1::GetStatsReply& reply) {
@@ -47,7 +52,8 @@ nlohmann::json ReplyJson(const v1::GetStatsReply& reply) {
   return {{"scenes", std::move(scenes)},
           {"memory_budget_bytes", reply.memory_budget_bytes()},
           {"uptime_s", reply.uptime_s()},
-          {"server_version", reply.server_version()}};
+          {"server_version", reply.server_version()},
+          {"audit_share", reply.audit_share()}};
 }
 
 std::string SceneTable(const v1::GetStatsReply& reply) {
@@ -68,6 +74,22 @@ std::string SceneTable(const v1::GetStatsReply& reply) {
                   Grouped(totals.base.intersect + totals.ip.intersect),
                   Grouped(totals.base.shade + totals.ip.shade), Grouped(scene.cells()),
                   Grouped(totals.cells_evicted), Bytes(scene.cache_bytes())});
+  }
+  return table.ToString();
+}
+
+// What the server's audit found, a row for every scene.
+std::string AuditTable(const v1::GetStatsReply& reply) {
+  Table table({{"scene"},
+               {"checked", Align::kRight},
+               {"violations", Align::kRight},
+               {"largest error/allowed", Align::kRight},
+               {"dropped", Align::kRight}});
+  for (const SceneStats& scene : reply.scenes()) {
+    const auto& audit = scene.audit();
+    table.AddRow({scene.scene(), Grouped(audit.checked()), Grouped(audit.violations()),
+                  absl::StrFormat("%.3g", audit.max_error_over_allowed()),
+                  Grouped(audit.dropped())});
   }
   return table.ToString();
 }
@@ -110,6 +132,11 @@ absl::StatusOr<int> Stats(const StatsFlags& flags) {
                                reply->server_version(), reply->uptime_s(),
                                Bytes(reply->memory_budget_bytes()))
             << SceneTable(*reply);
+  if (reply->audit_share() > 0) {
+    std::cout << absl::StrFormat("\nAudit of a share of %g of the answers from caches\n",
+                                 reply->audit_share())
+              << AuditTable(*reply);
+  }
   if (!flags.objects) return kExitOk;
   for (const SceneStats& scene : reply->scenes()) {
     std::cout << "\nCells of " << scene.scene() << " by verdict\n" << ObjectTable(scene);

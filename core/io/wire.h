@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 
@@ -56,6 +57,8 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message);
 
 // What the host has done and holds; cells by verdict for the objects that have any.
 v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host);
+
+v1::GetStatsReply::AuditStats AuditStatsToWire(const AuditCounts::Values& counts);
 
 v1::SceneInfo SceneInfoToWire(const std::string& name, const Scene& scene, uint64_t cache_bytes);
 

@@ -117,4 +117,13 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   return stats;
 }
 
+v1::GetStatsReply::AuditStats AuditStatsToWire(const AuditCounts::Values& counts) {
+  v1::GetStatsReply::AuditStats stats;
+  stats.set_checked(counts.checked);
+  stats.set_violations(counts.violations);
+  stats.set_dropped(counts.dropped);
+  stats.set_max_error_over_allowed(counts.max_error_over_allowed);
+  return stats;
+}
+
 }  // namespace linetree

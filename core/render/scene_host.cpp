@@ -55,23 +55,6 @@ Frame EmptyFrame(const Scene& scene, const FrameRequest& request) {
   return frame;
 }
 
-// The same ray with a direction of unit length, or the field that is wrong.
-absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
-  if (!IsFinite(ray.origin)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("rays[", index, "].origin: expected finite coordinates"));
-  }
-  // Scaled first: the square of a long vector would overflow, that of a short one vanish.
-  const Vec3d& d = ray.direction;
-  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  if (!IsFinite(d) || !(largest > 0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("rays[", index, "].direction: expected a finite vector other than zero"));
-  }
-  const Vec3d scaled{d.x / largest, d.y / largest, d.z / largest};
-  return Ray{ray.origin, Normalized(scaled)};
-}
-
 // How the budget is shared between the caches of a scene.
 struct MemoryShares {
   explicit MemoryShares(uint64_t memory_bytes) {
@@ -91,6 +74,22 @@ CacheOptions RadianceShare(CacheOptions options) {
 }
 
 }  // namespace
+
+absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
+  if (!IsFinite(ray.origin)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("rays[", index, "].origin: expected finite coordinates"));
+  }
+  // Scaled first: the square of a long vector would overflow, that of a short one vanish.
+  const Vec3d& d = ray.direction;
+  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  if (!IsFinite(d) || !(largest > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("rays[", index, "].direction: expected a finite vector other than zero"));
+  }
+  const Vec3d scaled{d.x / largest, d.y / largest, d.z / largest};
+  return Ray{ray.origin, Normalized(scaled)};
+}
 
 SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options,
                      const RenderLimits& limits)

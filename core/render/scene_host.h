@@ -40,6 +40,11 @@ struct HostTotals {
   FrameStats stats;
 };
 
+// The ray that TraceRays answers for `ray`: the same with a direction of unit length, or
+// INVALID_ARGUMENT for the field of rays[index] that is not finite or zero. The length of a unit
+// vector is off by rounding, so a second call may change a bit again.
+absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index);
+
 class SceneHost {
  public:
   explicit SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options = {},

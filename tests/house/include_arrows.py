@@ -1,6 +1,7 @@
 """Which folder may include which: data and dependencies flow one way.
 
-    core/  math -> jet -> scene -> trace -> tree -> certify -> cache -> render; io may include all of them
+    core/  math -> jet -> scene -> trace -> tree -> certify -> cache -> render -> audit; io may
+           include all of them
     client, server include core; the server may share code with client/library, nothing else crosses
 
 Protobuf messages are known in core/io only (of core), gRPC nowhere in core.
@@ -10,7 +11,7 @@ import re
 
 from trees import sources
 
-LAYERS = ["math", "jet", "scene", "trace", "tree", "certify", "cache", "render"]
+LAYERS = ["math", "jet", "scene", "trace", "tree", "certify", "cache", "render", "audit"]
 _INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 _GRPC = re.compile(r"^grpc|\.grpc\.pb\.h$")
 _PROTOBUF = re.compile(r"^google/protobuf/|\.pb\.h$")

@@ -243,6 +243,15 @@ TEST(WireTest, SceneInfoCountsAndBounds) {
   EXPECT_EQ(info.cache_bytes(), 77u);
 }
 
+TEST(WireTest, AuditCountsKeepTheirNames) {
+  const auto stats = AuditStatsToWire(
+      {.checked = 7, .violations = 2, .dropped = 5, .max_error_over_allowed = 1.5});
+  EXPECT_EQ(stats.checked(), 7u);
+  EXPECT_EQ(stats.violations(), 2u);
+  EXPECT_EQ(stats.dropped(), 5u);
+  EXPECT_EQ(stats.max_error_over_allowed(), 1.5);
+}
+
 TEST(WireTest, SceneStatsAreThoseOfTheHost) {
   SceneHost host(test::BallsOnFloor(3, 1));
   WorkerPool pool(1);

@@ -42,6 +42,9 @@ TEST_P(BadOptions, AreRefusedByTheNameOfTheirFlag) {
 using Options = ServerOptions;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const BadOption kBadOptions[] = {
+    {"--audit", [](Options& o) { o.audit_share = -1e-9; }},
+    {"--audit", [](Options& o) { o.audit_share = 1.5; }},
+    {"--audit", [](Options& o) { o.audit_share = kNan; }},
     {"--scene",
      [](Options& o) {
        o.scenes = {{"", "a.nff"}};

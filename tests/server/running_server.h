@@ -46,10 +46,12 @@ inline std::shared_ptr<const Scene> BuiltBallScene() {
 class RunningServer {
  public:
   // Listens on a free port whatever the options say.
-  explicit RunningServer(ServerOptions options = {}) {
+  explicit RunningServer(
+      ServerOptions options = {},
+      std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("no sinks")) {
     options.listen = "127.0.0.1:0";
     options.threads = 2;
-    auto server = Server::Start(options, std::make_shared<spdlog::logger>("no sinks"));
+    auto server = Server::Start(options, std::move(log));
     LT_CHECK(server.ok());
     server_ = *std::move(server);
     client_ = NewClient();

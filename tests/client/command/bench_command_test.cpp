@@ -54,6 +54,51 @@ TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
   EXPECT_EQ(json["tables"][2]["rows"][0]["printed"]["success"], 0.76);
 }
 
+std::vector<std::string> BenchAudit(std::vector<std::string> more) {
+  more.insert(more.begin(), {"bench", "audit", "--threads", "2"});
+  return more;
+}
+
+TEST(BenchCommand, AuditFindsNothingInCertifiedAnswers) {
+  TempDir dir;
+  const Finished run = RunLinetree(
+      BenchAudit({"--queries", "6000", "--family", "walls", "--family", "glass", "--scene",
+                  SourceFile("scenes/gap.textproto"), "--json", dir.File("audit.json")}));
+  ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("gap.textproto"));
+  EXPECT_THAT(run.out, HasSubstr("0 violations in "));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("audit.json")));
+  EXPECT_EQ(json["rows"].size(), 12u);
+  EXPECT_EQ(json["scenes"], 3);
+  EXPECT_EQ(json["total"]["violations"], 0);
+  EXPECT_EQ(json["judge"], "certified");
+  EXPECT_TRUE(json["violations"].empty());
+}
+
+// The paper's judge is a heuristic that mirrors and glass deceive.
+TEST(BenchCommand, AuditEndsWithOneWhenAnAnswerBreaksThePromise) {
+  TempDir dir;
+  const Finished run =
+      RunLinetree(BenchAudit({"--queries", "400000", "--seed", "3", "--judge", "paper", "--family",
+                              "glass", "--epsilon", "0.02", "--json", dir.File("audit.json")}));
+  EXPECT_EQ(run.exit_status, 1) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("\nscene=\"glass 0x"));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("audit.json")));
+  EXPECT_GT(json["total"]["violations"], 0);
+  ASSERT_FALSE(json["violations"].empty());
+  EXPECT_LE(json["violations"].size(), 20u);
+  EXPECT_THAT(json["violations"][0]["origin"], HasSubstr("0x"));
+  EXPECT_GT(json["violations"][0]["error_over_allowed"], 1);
+}
+
+TEST(BenchCommand, AuditChecksItsFlags) {
+  EXPECT_EQ(RunLinetree(BenchAudit({"--epsilon", "1.5"})).exit_status, 2);
+  EXPECT_EQ(RunLinetree(BenchAudit({"--family", "nonsense"})).exit_status, 2);
+  EXPECT_EQ(RunLinetree(BenchAudit({"--queries", "0"})).exit_status, 2);
+  EXPECT_EQ(RunLinetree(BenchAudit({"--judge", "nobody"})).exit_status, 2);
+  EXPECT_NE(RunLinetree(BenchAudit({"--scene", "missing.nff"})).exit_status, 0);
+}
+
 TEST(BenchCommand, ErrorWritesTableAndPlot) {
   TempDir dir;
   const Finished run = RunLinetree(
