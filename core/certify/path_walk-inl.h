@@ -269,7 +269,9 @@ class PathWalk {
       const bool own = middle.object == leg.start.object;
       meets = evaluator.Evaluate(context_.shapes[static_cast<size_t>(middle.object)], middle.face,
                                  middle.side, own ? leg.start.face : -1, hit);
-      certain = meets && evaluator.IsContained(hit);
+      certain =
+          meets && evaluator.IsContained(hit) &&
+          IsFirst(middle, leg, context_.scene.objects[static_cast<size_t>(middle.object)].shape);
     }
     List(leg, certain, middle, hit, inherited, index);
     if (!middle.IsHit()) {
@@ -281,6 +283,13 @@ class PathWalk {
     hit.cosine.AssumeWithin(0, 1);
     LeaveSurface(hit, middle, leg, index);
     return static_cast<int32_t>(index);
+  }
+
+  // Whether a hit is the first crossing of its object by all rays that meet it there. Hits of the
+  // outside are; the far side is met first only by rays that start inside.
+  static bool IsFirst(const Hit& middle, const Leg& leg, const Shape& shape) {
+    if (middle.side == Side::kOutside || middle.object == leg.start.object) return true;
+    return IsSolid(shape) && IsCertainlyInside(CloudOf(leg.origin), shape);
   }
 
   // Fills in what the rays of a branch can meet. `certain`: nothing but `hit`, or nothing at all,
