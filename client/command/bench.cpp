@@ -8,6 +8,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   app->require_subcommand(1);
   AddBenchAccuracy(*app, commands);
   AddBenchAudit(*app, commands);
+  AddBenchCertify(*app, commands);
   AddBenchError(*app, commands);
   AddBenchPaper(*app, commands);
 }

@@ -39,6 +39,7 @@ void AddLoad(CLI::App& parent, Commands& commands);
 void AddBench(CLI::App& parent, Commands& commands);
 void AddBenchAccuracy(CLI::App& bench, Commands& commands);
 void AddBenchAudit(CLI::App& bench, Commands& commands);
+void AddBenchCertify(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 

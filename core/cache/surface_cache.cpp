@@ -13,8 +13,11 @@ struct SurfaceCache::Work {
   std::unique_ptr<const CellLights> lights{};  // the result
 };
 
-SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes)
-    : certifier_(tracer), memory_bytes_(memory_bytes), store_(tracer.scene()) {}
+SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses)
+    : certifier_(tracer),
+      min_uses_(min_uses),
+      memory_bytes_(memory_bytes),
+      store_(tracer.scene()) {}
 
 SurfaceCache::Reader::Reader(const SurfaceCache& cache) : cache_(cache), lock_(cache.mutex_) {}
 
@@ -57,7 +60,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
   for (Work& work : works) {
     SurfaceNode& node = *work.node;
     if (!node.payload && !store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
-    const bool divide = work.points >= kMinSurfaceUses && node.cell.depth < kMaxSurfaceDepth &&
+    const bool divide = work.points >= min_uses_ && node.cell.depth < kMaxSurfaceDepth &&
                         !node.payload->IsDecided();
     if (!divide || !store_.Divide(node, clock_, memory_bytes_)) continue;
     for (SurfaceNode& child : *node.children) {

@@ -25,8 +25,9 @@ inline constexpr double kMinSurfaceUses = 200;
 
 class SurfaceCache {
  public:
-  // Keeps a reference to the tracer, which must outlive the cache.
-  SurfaceCache(const Tracer& tracer, uint64_t memory_bytes);
+  // Keeps a reference to the tracer, which must outlive the cache. Cells with `min_uses` or more
+  // are divided.
+  SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses = kMinSurfaceUses);
 
   // Holds the lock: keep it short, a part of a frame.
   class Reader : public LightLists {
@@ -57,6 +58,7 @@ class SurfaceCache {
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
 
   const LightCertifier certifier_;
+  const double min_uses_;
   std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:

@@ -1,0 +1,149 @@
+#include "client/command/certify_report.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/command/table.h"
+
+namespace linetree {
+namespace {
+
+double Share(uint64_t part, uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string Ratio(double value) { return absl::StrFormat("%.2f", value); }
+
+}  // namespace
+
+uint64_t CertifyReport::Violations() const {
+  uint64_t sum = 0;
+  for (const CellStudyRow& row : cells) sum += row.violations + row.replay_differences;
+  for (const SceneFrames& scene : frames) {
+    for (const FrameStudyRow& row : scene.rows) {
+      sum += row.violations + (row.epsilon == 0 ? row.unequal : 0);
+    }
+  }
+  return sum;
+}
+
+std::string CellTable(const CertifyReport& report) {
+  std::vector<TableColumn> columns = {
+      {"edge", Align::kRight}, {"cells", Align::kRight}, {"same paths", Align::kRight}};
+  for (const double epsilon : report.cell_options.epsilons) {
+    columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
+    columns.push_back({"paper's", Align::kRight});
+  }
+  for (const char* title : {"rays", "violations", "error/bound", "replay differs", "cell/16 shades",
+                            "refused/accepted"}) {
+    columns.push_back({title, Align::kRight});
+  }
+  Table table(columns);
+  for (const CellStudyRow& row : report.cells) {
+    std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge), Grouped(row.cells),
+                                     Percent(Share(row.same_paths, row.cells))};
+    for (size_t i = 0; i < row.certified.size(); ++i) {
+      line.push_back(Percent(Share(row.certified[i], row.cells)));
+      line.push_back(Percent(Share(row.paper[i], row.cells)));
+    }
+    line.push_back(Grouped(row.queries));
+    line.push_back(Grouped(row.violations));
+    line.push_back(absl::StrFormat("%.3f", row.largest_error));
+    line.push_back(Grouped(row.replay_differences));
+    line.push_back(Ratio(row.accepted_us / std::max(1e-9, row.shades_us)));
+    line.push_back(Ratio(row.refused_us / std::max(1e-9, row.accepted_us)));
+    table.AddRow(line);
+  }
+  return table.ToString();
+}
+
+std::string LightTable(const CertifyReport& report) {
+  Table table({{"lights", Align::kRight},
+               {"covered pixels", Align::kRight},
+               {"at most 1 undecided", Align::kRight},
+               {"undecided a pixel", Align::kRight},
+               {"cells", Align::kRight},
+               {"bytes a cell", Align::kRight},
+               {"us a cell", Align::kRight}});
+  for (const LightStudyRow& row : report.lights) {
+    table.AddRow({absl::StrCat(row.lights), Grouped(row.covered),
+                  Percent(Share(row.nearly_decided, row.covered)),
+                  Ratio(Share(row.undecided, row.covered)), Grouped(row.cells),
+                  absl::StrFormat("%.0f", Share(row.bytes, row.cells)),
+                  absl::StrFormat("%.1f", row.cell_us)});
+  }
+  return table.ToString();
+}
+
+std::string FrameTable(const CertifyReport& report) {
+  Table table({{"scene", Align::kLeft},
+               {"epsilon", Align::kRight},
+               {"pixels", Align::kRight},
+               {"unequal", Align::kRight},
+               {"violations", Align::kRight},
+               {"error/allowed", Align::kRight},
+               {"interpolated", Align::kRight},
+               {"replayed", Align::kRight},
+               {"residual", Align::kRight},
+               {"searches", Align::kRight},
+               {"warm", Align::kRight}});
+  for (const SceneFrames& scene : report.frames) {
+    for (const FrameStudyRow& row : scene.rows) {
+      table.AddRow({scene.scene, Ratio(row.epsilon), Grouped(row.pixels), Grouped(row.unequal),
+                    Grouped(row.violations), absl::StrFormat("%.3f", row.largest_error),
+                    Percent(Share(row.interpolated, row.pixels)),
+                    Percent(Share(row.replayed, row.pixels)),
+                    Percent(Share(row.residual, row.pixels)), Ratio(row.path_searches),
+                    Ratio(row.warm_searches)});
+    }
+  }
+  return table.ToString();
+}
+
+nlohmann::json CertifyJson(const CertifyReport& report) {
+  nlohmann::json json = {{"seed", report.cell_options.seed}, {"violations", report.Violations()}};
+  for (const CellStudyRow& row : report.cells) {
+    json["cells"].push_back({{"edge", row.edge},
+                             {"cells", row.cells},
+                             {"same_paths", row.same_paths},
+                             {"epsilons", report.cell_options.epsilons},
+                             {"certified", row.certified},
+                             {"paper", row.paper},
+                             {"rays", row.queries},
+                             {"violations", row.violations},
+                             {"largest_error_over_bound", row.largest_error},
+                             {"replay_differences", row.replay_differences},
+                             {"accepted_us", row.accepted_us},
+                             {"refused_us", row.refused_us},
+                             {"shades_us", row.shades_us}});
+  }
+  for (const LightStudyRow& row : report.lights) {
+    json["lights"].push_back({{"scene", report.lights_scene},
+                              {"lights", row.lights},
+                              {"covered_pixels", row.covered},
+                              {"at_most_one_undecided", row.nearly_decided},
+                              {"undecided", row.undecided},
+                              {"cells", row.cells},
+                              {"bytes", row.bytes},
+                              {"cell_us", row.cell_us}});
+  }
+  for (const SceneFrames& scene : report.frames) {
+    for (const FrameStudyRow& row : scene.rows) {
+      json["frames"].push_back({{"scene", scene.scene},
+                                {"epsilon", row.epsilon},
+                                {"pixels", row.pixels},
+                                {"unequal", row.unequal},
+                                {"violations", row.violations},
+                                {"largest_error_over_allowed", row.largest_error},
+                                {"interpolated", row.interpolated},
+                                {"replayed", row.replayed},
+                                {"residual", row.residual},
+                                {"path_searches", row.path_searches},
+                                {"warm_searches", row.warm_searches}});
+    }
+  }
+  return json;
+}
+
+}  // namespace linetree

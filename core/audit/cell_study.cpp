@@ -1,0 +1,218 @@
+#include "core/audit/cell_study.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "core/audit/random_stream.h"
+#include "core/audit/sparse_scene.h"
+#include "core/certify/path_certifier.h"
+#include "core/tree/corner_sample.h"
+#include "core/tree/paper_judge.h"
+
+namespace linetree {
+namespace {
+
+double NowUs() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::micro>(now).count();
+}
+
+// One list of steps, for the first surface of one ray.
+class OneList : public PathLists {
+ public:
+  explicit OneList(const PathStep* steps) : steps_(steps) {}
+  const PathStep* Find(const Hit&, const Vec3d&) const override {
+    return std::exchange(steps_, nullptr);
+  }
+
+ private:
+  mutable const PathStep* steps_;
+};
+class NoLists : public LightLists {
+ public:
+  const LightList* Find(const Hit&) const override { return nullptr; }
+};
+
+struct RandomCell {
+  int object = 0;
+  int pair = 0;
+  CellBox box;
+};
+
+class SceneStudy {
+ public:
+  SceneStudy(const CellStudyOptions& options, uint64_t seed)
+      : options_(options),
+        random_(MixBits(seed)),
+        scene_(MakeSparseScene(seed)),
+        tracer_(*scene_),
+        certifier_(tracer_),
+        paper_(tracer_) {
+    for (const Object& object : scene_->objects) charts_.emplace_back(object);
+    limits_.max_depth = options.max_depth;
+  }
+
+  CellStudyRow Study(double edge) {
+    CellStudyRow row;
+    row.edge = edge;
+    row.certified.resize(options_.epsilons.size());
+    row.paper.resize(options_.epsilons.size());
+    for (int i = 0; i < options_.cells_per_scene; ++i) {
+      if (const auto cell = SomeCell(edge)) StudyCell(*cell, row);
+    }
+    return row;
+  }
+
+ private:
+  // The cell, on a grid of the given edge, of a random ray that meets a random object.
+  std::optional<RandomCell> SomeCell(double edge) {
+    RandomCell cell;
+    cell.object = random_.Below(static_cast<int>(scene_->objects.size()));
+    const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
+    const Box3& bounds = scene_->objects[static_cast<size_t>(cell.object)].bounds;
+    const double reach = std::max(0.25, Length(bounds.Extent()) / 2);
+    Vec3d eye = bounds.Center() + random_.Direction() * (random_.Uniform(1.5, 4) * reach);
+    if (eye.z < -0.9) eye.z = random_.Uniform(-0.9, 1.1);
+    const Vec3d direction = Normalized(random_.InBox(bounds.min, bounds.max) - eye);
+    const Hit hit = tracer_.IntersectObjectLine(cell.object, eye, direction);
+    if (!hit.IsHit() || hit.t < 0) return std::nullopt;
+    cell.pair = chart.PairOf(direction);
+    const auto coords = chart.CoordsOf(cell.pair, hit.point, direction);
+    if (!coords) return std::nullopt;
+    const RayCoords size = EdgesOf(chart.FormOf(cell.pair), edge);
+    for (size_t i = 0; i < 4; ++i) {
+      const double index = std::floor((*coords)[i] / size[i]);
+      cell.box.from[i] = index * size[i];
+      cell.box.to[i] = std::min(1.0, (index + 1) * size[i]);
+    }
+    return cell;
+  }
+
+  // A part of the box's faces in coordinates, whose planes are larger. Slopes on planar objects run
+  // over twice the width that rays through a box of a quarter of the object's size have.
+  static RayCoords EdgesOf(const LineForm& form, double edge) {
+    if (!form.between_planes) return {edge, edge, 2 * edge, 2 * edge};
+    RayCoords size;
+    for (size_t i = 0; i < 2; ++i) {
+      const double half = Length(form.origin_by[i]) / 2;
+      size[i] = size[i + 2] = edge * (half - form.along_axis) / half;
+    }
+    return size;
+  }
+
+  void StudyCell(const RandomCell& cell, CellStudyRow& row) {
+    ++row.cells;
+    const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
+    const double begin = NowUs();
+    const CellPaths paths =
+        certifier_.Certify(cell.object, chart, cell.pair, cell.box, limits_, nullptr);
+    const double took = NowUs() - begin;
+    const bool same = paths.verdict == Verdict::kCertified;
+    (same ? row.accepted_us : row.refused_us) += took;
+    row.same_paths += same ? 1 : 0;
+    const double before_shades = NowUs();
+    const Corners corners = Shade(cell);
+    if (same) row.shades_us += NowUs() - before_shades;
+    const Judgement paper = paper_.Decide(corners);
+    for (size_t i = 0; i < options_.epsilons.size(); ++i) {
+      const double epsilon = options_.epsilons[i];
+      row.certified[i] += same && paths.spread <= epsilon ? 1 : 0;
+      row.paper[i] += paper.verdict == Verdict::kCertified && paper.spread <= epsilon ? 1 : 0;
+    }
+    for (int q = 0; q < options_.queries_per_cell; ++q) Query(cell, paths, row);
+  }
+
+  Corners Shade(const RandomCell& cell) {
+    Corners corners;
+    RayCounts counts;
+    for (size_t m = 0; m < kCellCorners; ++m) {
+      RayCoords at;
+      for (size_t i = 0; i < 4; ++i) at[i] = (m >> i & 1) != 0 ? cell.box.to[i] : cell.box.from[i];
+      corners[m] = std::make_shared<const CornerSample>(
+          TraceCorner(tracer_, cell.object, charts_[static_cast<size_t>(cell.object)], cell.pair,
+                      at, limits_, counts));
+    }
+    return corners;
+  }
+
+  // One ray of the cell: sides and middles are as likely as the rest.
+  void Query(const RandomCell& cell, const CellPaths& paths, CellStudyRow& row) {
+    if (paths.steps.empty()) return;
+    RayCoords local, at;
+    for (size_t i = 0; i < 4; ++i) {
+      local[i] = random_.OneIn(4) ? 0.5 * random_.Below(3) : random_.Unit();
+      at[i] = cell.box.from[i] + local[i] * (cell.box.to[i] - cell.box.from[i]);
+    }
+    const Ray line = charts_[static_cast<size_t>(cell.object)].LineOf(cell.pair, at);
+    const Hit hit = tracer_.IntersectObjectLine(cell.object, line.origin, line.direction);
+    if (!hit.IsHit() || !paths.steps[0].EndsAt(hit)) return;
+    RayCounts counts;
+    const Rgb classical =
+        tracer_.RadianceFromHit(hit, line.origin, line.direction, limits_, counts);
+    const OneList list(paths.steps.data());
+    const Rgb replayed = tracer_.RadianceFromHit(hit, line.origin, line.direction, limits_,
+                                                 NoLists(), &list, counts);
+    if (!(replayed == classical)) ++row.replay_differences;
+    if (paths.verdict != Verdict::kCertified) return;
+    ++row.queries;
+    const Rgb answer = Evaluate(*paths.interpolant, local);
+    double error = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double floor = std::max(classical[c], RadianceFloor(*scene_));
+      error = std::max(error, std::abs(answer[c] - classical[c]) / floor);
+    }
+    if (error > paths.spread) ++row.violations;
+    if (paths.spread > 0) row.largest_error = std::max(row.largest_error, error / paths.spread);
+  }
+
+  const CellStudyOptions& options_;
+  RandomStream random_;
+  const std::shared_ptr<const Scene> scene_;
+  const Tracer tracer_;
+  const PathCertifier certifier_;
+  const PaperJudge paper_;
+  std::vector<ObjectChart> charts_;
+  PathLimits limits_;
+};
+
+void Add(const CellStudyRow& from, CellStudyRow& to) {
+  to.cells += from.cells;
+  to.same_paths += from.same_paths;
+  for (size_t i = 0; i < from.certified.size(); ++i) {
+    to.certified[i] += from.certified[i];
+    to.paper[i] += from.paper[i];
+  }
+  to.queries += from.queries;
+  to.violations += from.violations;
+  to.replay_differences += from.replay_differences;
+  to.largest_error = std::max(to.largest_error, from.largest_error);
+  to.accepted_us += from.accepted_us;
+  to.refused_us += from.refused_us;
+  to.shades_us += from.shades_us;
+}
+
+}  // namespace
+
+std::vector<CellStudyRow> StudyCells(const CellStudyOptions& options, WorkerPool& pool,
+                                     const std::function<void(double)>& progress) {
+  std::vector<CellStudyRow> rows;
+  for (size_t e = 0; e < options.edges.size(); ++e) {
+    std::vector<CellStudyRow> parts(static_cast<size_t>(options.scenes));
+    pool.ParallelFor(parts.size(), [&](size_t i) {
+      parts[i] = SceneStudy(options, options.seed * 1'000'003 + i).Study(options.edges[e]);
+    });
+    CellStudyRow row = parts[0];
+    for (size_t i = 1; i < parts.size(); ++i) Add(parts[i], row);
+    const double accepted = std::max<double>(1, static_cast<double>(row.same_paths));
+    row.accepted_us /= accepted;
+    row.shades_us /= accepted;
+    row.refused_us /= std::max<double>(1, static_cast<double>(row.cells - row.same_paths));
+    rows.push_back(row);
+    progress(static_cast<double>(e + 1) / static_cast<double>(options.edges.size()));
+  }
+  return rows;
+}
+
+}  // namespace linetree

@@ -1,0 +1,41 @@
+// How many random 4D cells the two judges accept, what that costs, and whether it is true.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/render/worker_pool.h"
+
+namespace linetree {
+
+struct CellStudyOptions {
+  uint64_t seed = 1;
+  int scenes = 100;  // of MakeSparseScene
+  int cells_per_scene = 60;
+  int queries_per_cell = 40;
+  // Edges of cells as parts of the faces of the object's bounding box.
+  std::vector<double> edges = {0.25, 0.125, 0.0625, 0.03125, 0.015625};
+  std::vector<double> epsilons = {0.02, 0.1, 0.25};
+  int max_depth = 6;
+};
+
+// All cells of one edge.
+struct CellStudyRow {
+  double edge = 0;
+  uint64_t cells = 0;                      // whose middle ray was aimed at an object
+  uint64_t same_paths = 0;                 // all rays certainly meet the same surfaces and lights
+  std::vector<uint64_t> certified, paper;  // accepted, by epsilon
+  uint64_t queries = 0;                    // rays inside certified cells
+  uint64_t violations = 0;                 // whose error is beyond the cell's bound
+  uint64_t replay_differences = 0;         // answers along the cell's lists that differ by a bit
+  double largest_error = 0;                // relative to the bound
+  // Microseconds for a cell: certified ones, the others, and sixteen classical shades of the
+  // certified ones' corners.
+  double accepted_us = 0, refused_us = 0, shades_us = 0;
+};
+
+std::vector<CellStudyRow> StudyCells(const CellStudyOptions& options, WorkerPool& pool,
+                                     const std::function<void(double)>& progress);
+
+}  // namespace linetree
