@@ -32,7 +32,7 @@ class OneList : public PathLists {
 };
 class NoLists : public LightLists {
  public:
-  const LightList* Find(const Hit&) const override { return nullptr; }
+  KnownLights Find(const Hit&) const override { return {}; }
 };
 
 struct RandomCell {

@@ -99,7 +99,7 @@ LightStudyRow StudyLights(const Scene& scene, const Camera& camera, int side, do
       ++row.nearly_decided;
       continue;
     }
-    const int undecided = CountUndecided(scene, hit, reader.Find(hit));
+    const int undecided = CountUndecided(scene, hit, reader.Find(hit).lists);
     row.undecided += static_cast<uint64_t>(undecided);
     row.nearly_decided += undecided <= 1 ? 1 : 0;
   }

@@ -15,18 +15,20 @@ struct SurfaceCache::Work {
 
 SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses)
     : certifier_(tracer),
+      summer_(tracer.scene()),
       min_uses_(min_uses),
       memory_bytes_(memory_bytes),
       store_(tracer.scene()) {}
 
-SurfaceCache::Reader::Reader(const SurfaceCache& cache) : cache_(cache), lock_(cache.mutex_) {}
+SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon)
+    : cache_(cache), epsilon_(epsilon), lock_(cache.mutex_) {}
 
-const LightList* SurfaceCache::Reader::Find(const Hit& hit) const {
+KnownLights SurfaceCache::Reader::Find(const Hit& hit) const {
   const auto object = static_cast<size_t>(hit.object);
   const SurfaceTree* tree = cache_.store_.Get(object);
-  if (tree != nullptr) return tree->Find(hit, cache_.clock_);
+  if (tree != nullptr) return tree->Find(hit, epsilon_, cache_.clock_);
   cache_.store_.Want(object);
-  return nullptr;
+  return {};
 }
 
 std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight) {
@@ -52,8 +54,11 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
     if (work.node->payload) return;
     const SurfaceChart& chart = store_.Get(work.object)->chart();
     const PatchHull hull = chart.HullOf(work.node->root, work.node->cell);
-    work.lights = std::make_unique<const CellLights>(
+    auto lights = std::make_unique<CellLights>(
         certifier_.Certify(static_cast<int>(work.object), hull, work.parent));
+    summer_.AddSums(static_cast<int>(work.object), chart, work.node->root, work.node->cell,
+                    *lights);
+    work.lights = std::move(lights);
   });
   std::vector<Work> next;
   std::unique_lock lock(mutex_);

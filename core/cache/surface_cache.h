@@ -12,6 +12,7 @@
 
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
+#include "core/certify/diffuse_summer.h"
 #include "core/trace/light_lists.h"
 #include "core/trace/tracer.h"
 #include "core/tree/light_certifier.h"
@@ -32,11 +33,13 @@ class SurfaceCache {
   // Holds the lock: keep it short, a part of a frame.
   class Reader : public LightLists {
    public:
-    explicit Reader(const SurfaceCache& cache);
-    const LightList* Find(const Hit& hit) const override;
+    // Diffuse sums are used where they meet `epsilon`; at 0 never.
+    explicit Reader(const SurfaceCache& cache, double epsilon = 0);
+    KnownLights Find(const Hit& hit) const override;
 
    private:
     const SurfaceCache& cache_;
+    const double epsilon_;
     std::shared_lock<std::shared_mutex> lock_;
   };
 
@@ -58,6 +61,7 @@ class SurfaceCache {
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
 
   const LightCertifier certifier_;
+  const DiffuseSummer summer_;
   const double min_uses_;
   std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;

@@ -222,7 +222,7 @@ void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCa
   answer.radiance = tracer_.RadianceFromHit(hit, rays_[ray].origin, direction, options_.limits,
                                             lights, &paths, own);
   if (own.intersect == 0) {
-    answer.source = Source::kReplayed;
+    answer.source = own.summed > 0 ? Source::kInterpolated : Source::kReplayed;
   } else if (own.listed + own.listed_branches > 0) {
     answer.source = Source::kResidual;
   }
@@ -241,12 +241,14 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     }
     // The last wave has nobody to tell where rays go.
     const bool is_last = wave == kWaves - 1;
+    const double asked = options_.max_relative_error;
+    const double epsilon = asked >= kMinInterpolationError ? asked : 0;
     std::mutex samples_mutex;
     std::vector<PathCache::Sample> samples;
     ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
       std::vector<PathCache::Sample> own;
       {
-        const SurfaceCache::Reader lights(trees.surfaces);
+        const SurfaceCache::Reader lights(trees.surfaces, epsilon);
         const PathCache::Reader paths(trees.paths, options_.limits, is_last ? nullptr : &own);
         for (size_t k = begin; k < end; ++k) AnswerWithTrees(part[k], lights, paths, counts);
       }

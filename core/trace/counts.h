@@ -14,6 +14,7 @@ struct RayCounts {
   // and refracted ones (PathLists).
   uint64_t listed = 0;
   uint64_t listed_branches = 0;
+  uint64_t summed = 0;  // surfaces whose diffuse light came from KnownLights::diffuse
   // The paper's section 8: Intersect is a ray-scene intersection (of any kind of ray but
   // listed ones), Shade a radiance computation at a point.
   uint64_t intersect = 0;
@@ -26,6 +27,7 @@ struct RayCounts {
     shadow += o.shadow;
     listed += o.listed;
     listed_branches += o.listed_branches;
+    summed += o.summed;
     intersect += o.intersect;
     shade += o.shade;
     return *this;

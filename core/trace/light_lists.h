@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/math/rgb.h"
 #include "core/trace/hit.h"
 
 namespace linetree {
@@ -20,18 +21,28 @@ enum class LightKnowledge : uint8_t {
 // One light as seen from a piece of surface.
 struct LightList {
   LightKnowledge knowledge = LightKnowledge::kUnknown;
+  bool summed = false;                    // kOn: its diffuse light is part of KnownLights::diffuse
   int32_t occluder = kNoObject;           // kOff
   std::span<const int32_t> candidates{};  // kListed: at least one, ascending
+};
+
+// What is known at one hit.
+struct KnownLights {
+  // One entry for every light of the scene, or null when nothing is known.
+  const LightList* lists = nullptr;
+  // Whether `diffuse` may stand for the diffuse terms of all lights that are `summed`: the sum of
+  // E_l (n.l) of those that the facing side sees, within the relative error of the request.
+  bool has_diffuse = false;
+  Rgb diffuse;
 };
 
 class LightLists {
  public:
   virtual ~LightLists() = default;
 
-  // One entry for every light of the scene, or null when nothing is known at this hit. What it says
-  // must hold for the classical tracer's own arithmetic: the tracer's answer may not change by a
-  // bit. Valid while this object lives.
-  virtual const LightList* Find(const Hit& hit) const = 0;
+  // What the lists say must hold for the classical tracer's own arithmetic: without `diffuse` the
+  // tracer's answer may not change by a bit. Valid while this object lives.
+  virtual KnownLights Find(const Hit& hit) const = 0;
 };
 
 }  // namespace linetree

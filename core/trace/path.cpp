@@ -176,16 +176,26 @@ class PathTracer {
                  RgbOf<S>& radiance) {
     if (!UsesLights(material)) return;
     const RayStart start{hit.object, hit.face, hit.side};
-    const LightList* known = nullptr;
-    if constexpr (kListed) known = lights_->Find(hit);
+    KnownLights known;
+    if constexpr (kListed) {
+      known = lights_->Find(hit);
+      if (known.has_diffuse) {
+        ++counts_.summed;
+        radiance += material.diffuse * known.diffuse;
+      }
+    }
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
       const Light& light = scene_.lights[i];
+      if (kListed && known.has_diffuse && known.lists[i].summed) {
+        if (!IsBlack(material.specular)) AddHighlight(leg, hit, material, light, radiance);
+        continue;
+      }
       const LightView<S> view = ViewOf(light, hit.point);
       const S cosine = Dot(hit.normal, view.to_light);
       LightTerm term{LightState::kFacingAway};
       if (cosine > 0) {
-        const auto shadow = ShadowOf(known == nullptr ? LightList{} : known[i], hit.point,
-                                     static_cast<int>(i), start);
+        const auto shadow = ShadowOf(known.lists == nullptr ? LightList{} : known.lists[i],
+                                     hit.point, static_cast<int>(i), start);
         term = shadow.term;
         if (term.state == LightState::kLit) {
           radiance += shadow.filter * LightTermRadiance(material, light, view, cosine, hit.normal,
@@ -196,6 +206,14 @@ class PathTracer {
         tree_->lights[static_cast<size_t>(NodeAt(node).first_light) + i] = term;
       }
     }
+  }
+
+  // Of a light that is certainly on.
+  void AddHighlight(const Leg<S>& leg, const HitOf<S>& hit, const Material& material,
+                    const Light& light, RgbOf<S>& radiance) const {
+    const LightView<S> view = ViewOf(light, hit.point);
+    if (!(Dot(hit.normal, view.to_light) > 0)) return;
+    radiance += HighlightRadiance(material, light, view, hit.normal, Vec3<S>(-leg.direction));
   }
 
   using Shadow = typename TracerOf<S>::Shadow;

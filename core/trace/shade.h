@@ -58,6 +58,14 @@ RgbOf<S> LightTermRadiance(const Material& material, const Light& light, const L
   return Scaled(light.irradiance, view.fall_off) * reflectance;
 }
 
+// The highlight's part of it.
+template <class S>
+RgbOf<S> HighlightRadiance(const Material& material, const Light& light, const LightView<S>& view,
+                           const Vec3<S>& n, const Vec3<S>& v) {
+  return Scaled(light.irradiance, view.fall_off) *
+         Scaled(material.specular, Highlight(material.exponent, n, view.to_light, v));
+}
+
 // Mirror direction of unit d about unit n.
 template <class S>
 Vec3<S> Reflected(const Vec3<S>& d, const Vec3<S>& n) {

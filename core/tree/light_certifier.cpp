@@ -124,6 +124,7 @@ CellLights LightCertifier::Certify(int object, const PatchHull& hull,
     begins[i] = cell.objects.size();
     if (inherited.knowledge == LightKnowledge::kOn || inherited.knowledge == LightKnowledge::kOff) {
       list = inherited;
+      list.summed = false;
       continue;
     }
     const Bundle bundle(object, static_cast<int>(i), hull, scene_.lights[i], world_);

@@ -9,12 +9,15 @@
 // of H. Directional lights are the limit: conv(H) + half line.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/trace/light_lists.h"
 #include "core/trace/tracer.h"
 #include "core/tree/candidate_search.h"
+#include "core/tree/diffuse_sum.h"
 #include "core/tree/surface_chart.h"
 
 namespace linetree {
@@ -27,9 +30,14 @@ struct CellLights {
 
   std::vector<LightList> lights;
   std::vector<int32_t> objects;  // the candidates of all lights, one after the other
+  // The diffuse light of those that are `summed`, on the outside or the side that a planar shape's
+  // normal points to, and on its other side. Null: evaluate them one by one.
+  std::array<std::unique_ptr<const DiffuseSum>, 2> sums;
 
   uint64_t HeapBytes() const {
-    return lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t);
+    uint64_t bytes = lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t);
+    for (const auto& sum : sums) bytes += sum ? sizeof(DiffuseSum) : 0;
+    return bytes;
   }
   // Whether a smaller piece could know more.
   bool IsDecided() const;

@@ -119,7 +119,8 @@ struct SurfaceChart::Builder {
 };
 
 SurfaceChart::SurfaceChart(const Object& object)
-    : reach_(Length(object.bounds.Extent()) + Length(object.bounds.Center())),
+    : is_thin_(IsPlanar(object.shape)),
+      reach_(Length(object.bounds.Extent()) + Length(object.bounds.Center())),
       slack_(kSurfaceSlack * reach_),
       pad_(slack_) {
   std::visit(Builder{*this}, object.shape);
@@ -233,6 +234,16 @@ Vec3d SurfaceChart::ToWorld(const Vec3d& p) const {
 // A world displacement d is M d in object space, M = object_from_world; n.(M d) = (M^T n).d.
 double SurfaceChart::Shift(const Vec3d& normal) const {
   return pad_ * Length(MultiplyTransposed(frame_.object_from_world, normal));
+}
+
+std::optional<SurfaceChart::PlanarCell> SurfaceChart::PlanarCellOf(int patch,
+                                                                   const SurfaceCell& cell) const {
+  if (patch < curved_patches_) return std::nullopt;
+  const PlanePatch& plane = planes_.at(static_cast<size_t>(patch - curved_patches_));
+  const Range u = RangeOf(cell.i, cell.depth), v = RangeOf(cell.j, cell.depth);
+  const Vec3d ex = plane.ex * plane.hx, ey = plane.ey * plane.hy;
+  return PlanarCell{plane.center + ex * (2 * u.low - 1) + ey * (2 * v.low - 1),
+                    ex * (2 * (u.high - u.low)), ey * (2 * (v.high - v.low)), plane.normal};
 }
 
 // The cell's parallelogram with a ball of radius `pad` added: a displacement d of at most pad is

@@ -29,6 +29,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -100,6 +101,20 @@ class SurfaceChart {
   // of Locate at the cell's sides, and every point within Slack() of such an x.
   PatchHull HullOf(int patch, const SurfaceCell& cell) const;
 
+  // The cell of a planar patch: the points corner + s eu + t ev, s and t in [0, 1]. Nothing for
+  // curved patches.
+  struct PlanarCell {
+    Vec3d corner, eu, ev;
+    Vec3d normal;  // unit; either way for solids
+  };
+  std::optional<PlanarCell> PlanarCellOf(int patch, const SurfaceCell& cell) const;
+
+  // Whether a facing normal belongs to the side of a planar shape that its own normal does not
+  // point to. Solids and frustums are seen from outside.
+  bool IsOtherSide(const Vec3d& facing) const {
+    return is_thin_ && Dot(facing, planes_[0].normal) < 0;
+  }
+
   // World length.
   double Slack() const { return slack_; }
 
@@ -132,6 +147,7 @@ class SurfaceChart {
   // the normal's length, to be moved by pad_ in the world.
   double Shift(const Vec3d& normal) const;
 
+  bool is_thin_;  // lies in one plane
   double reach_;  // the object's size plus its distance from the origin
   double slack_;
   double max_stretch_ = 1;  // of a curved frame: at least world length per object length

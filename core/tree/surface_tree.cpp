@@ -1,15 +1,34 @@
 #include "core/tree/surface_tree.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace linetree {
 
 SurfaceTree::SurfaceTree(const Object& object) : chart_(object), cells_(chart_.patches()) {}
 
-const LightList* SurfaceTree::Find(const Hit& hit, uint32_t now) const {
-  if (!chart_.IsOn(hit.face, hit.point)) return nullptr;
+KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) const {
+  KnownLights known;
+  if (!chart_.IsOn(hit.face, hit.point)) return known;
   const SurfacePoint point = chart_.Locate(hit.face, hit.point);
   const SurfaceNode& node = cells_.Find(point.patch, CellAt(point, kMaxSurfaceDepth), now);
   node.uses.fetch_add(1, std::memory_order_relaxed);
-  return node.payload ? node.payload->lights.data() : nullptr;
+  if (!node.payload) return known;
+  known.lists = node.payload->lights.data();
+  if (epsilon > 0) AddDiffuse(hit, point, node, epsilon, known);
+  return known;
+}
+
+void SurfaceTree::AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
+                             double epsilon, KnownLights& known) const {
+  const auto& sums = node.payload->sums;
+  if ((!sums[0] && !sums[1]) || hit.side != Side::kOutside) return;
+  const size_t side = chart_.IsOtherSide(hit.normal) ? 1 : 0;
+  if (!sums[side] || !(sums[side]->spread <= epsilon)) return;
+  const double scale = std::ldexp(1.0, node.cell.depth);
+  known.has_diffuse = true;
+  known.diffuse = sums[side]->At(std::clamp(point.u * scale - node.cell.i, 0.0, 1.0),
+                                 std::clamp(point.v * scale - node.cell.j, 0.0, 1.0));
 }
 
 uint64_t SurfaceTree::CountBytes() const {

@@ -26,12 +26,15 @@ class SurfaceTree {
   const SurfaceChart& chart() const { return chart_; }
   CellTree<SurfaceTraits>& cells() { return cells_; }
 
-  // What the smallest cell knows that holds the hit, or null. Counts a use.
-  const LightList* Find(const Hit& hit, uint32_t now) const;
+  // What the smallest cell knows that holds the hit, with sums that meet `epsilon`. Counts a use.
+  KnownLights Find(const Hit& hit, double epsilon, uint32_t now) const;
 
   uint64_t CountBytes() const;
 
  private:
+  void AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
+                  double epsilon, KnownLights& known) const;
+
   SurfaceChart chart_;
   CellTree<SurfaceTraits> cells_;
 };

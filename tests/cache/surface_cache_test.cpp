@@ -24,7 +24,7 @@ class SurfaceCacheTest : public testing::Test {
       const Vec3d eye = random.InBox({-5, -9, 1}, {5, -7, 6});
       const Vec3d at = random.InBox({-4, -3, 0}, {4, 4, 2});
       const Hit hit = tracer_.Intersect(eye, at - eye, {});
-      if (hit.IsHit() && lists.Find(hit) != nullptr) ++known;
+      if (hit.IsHit() && lists.Find(hit).lists != nullptr) ++known;
     }
     return known;
   }

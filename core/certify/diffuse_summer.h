@@ -1,0 +1,54 @@
+// Sums of the diffuse light of many lights over cells of surface, with proved bounds on the error.
+//
+// Planar cells: on a plane n.(L - x) is a constant h, and E h / |L - x| is interpolated bicubically
+// at 4 x 4 nodes. Along any line |d^4/ds^4 (1/r)| = 4! |P_4(cos)| / r^5 <= 24 / r^5 (Legendre's
+// polynomial), and cubic interpolation over a length w errs by at most max|f''''| / 24 * (w/3)^4,
+// so
+//   error <= sum_l E_l h_l (wu^4 + Lambda wv^4) / (81 dmin_l^5),
+// Lambda = 1.64 bounding the sum of the absolute weights of four equidistant nodes, which pass the
+// error along the one axis on to the other.
+//
+// Spheres and frustums: bilinear, with the bound of corner jets of dimension 2.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/certify/jet_shape.h"
+#include "core/tree/light_certifier.h"
+#include "core/tree/surface_chart.h"
+
+namespace linetree {
+
+// With fewer lights on, evaluating them one by one is as fast.
+inline constexpr int kMinSummedLights = 4;
+
+// Sums with a larger relative error are not kept.
+inline constexpr double kMaxSumSpread = 0.5;
+
+class DiffuseSummer {
+ public:
+  // Keeps a reference to the scene, which must outlive it.
+  explicit DiffuseSummer(const Scene& scene);
+
+  // Adds to a cell's lights, as they are certified, the sums that are worth it, and marks what is
+  // in them.
+  void AddSums(int object, const SurfaceChart& chart, int patch, const SurfaceCell& cell,
+               CellLights& lights) const;
+
+ private:
+  using MaybeSum = std::unique_ptr<const DiffuseSum>;
+
+  // The lights that can be in a sum.
+  std::vector<size_t> Summable(const CellLights& lights) const;
+  // On the side that `normal` points to.
+  MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
+                      const std::vector<size_t>& lights) const;
+  MaybeSum SumOnCurve(int object, int patch, const SurfaceCell& cell,
+                      const std::vector<size_t>& lights) const;
+
+  const Scene& scene_;
+  std::vector<JetShape> shapes_;  // by object
+};
+
+}  // namespace linetree
