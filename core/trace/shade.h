@@ -16,14 +16,26 @@ namespace linetree {
 // How a light is seen from a point.
 template <class S>
 struct LightView {
-  Vec3<S> to_light;  // unit
+  Vec3<S> to_light;  // unit; zero where the light itself is, which faces nothing
   S fall_off;        // factor on Light::irradiance
 };
+
+// Below this distance the squares of its components lose bits to underflow, in the end all of them.
+// At 2^-484 the square is 2^-968: its last bit is 2^-1021, a normal number.
+inline constexpr double kNearLight = 0x1p-484;
+
 template <class S>
 LightView<S> ViewOf(const Light& light, const Vec3<S>& point) {
   if (light.kind == LightKind::kDirectional) return {CastVec3<S>(light.to_light), S(1)};
   const Vec3<S> segment = -(point - light.position);
   const S distance = Length(segment);
+  if (distance < kNearLight) {
+    // Scaled up by a power of two, which is exact.
+    const Vec3<S> scaled = segment * S(0x1p+600);
+    const S length = Length(scaled);
+    const Vec3<S> to_light = length > 0 ? scaled * (S(1) / length) : Vec3<S>{};
+    return {to_light, FallOff(light, S(length * S(0x1p-600)))};
+  }
   return {segment * (S(1) / distance), FallOff(light, distance)};
 }
 

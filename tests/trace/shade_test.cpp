@@ -89,6 +89,20 @@ TEST(Shade, LightTermIsTheFormula) {
   }
 }
 
+// However near: the direction is unit until the light is at the point itself.
+TEST(Shade, LightsThatTouchThePointHaveADirection) {
+  const Vec3d along = Normalized(Vec3d{1, -2, 3});
+  for (const double distance : {1e30, 1.0, 1e-30, 1e-140, 1e-150, 1e-160, 1e-200, 1e-300, 1e-320}) {
+    const Light light = test::PointLight(along * distance);
+    const double rounding = kRounding + 0x1p-1074 / distance;
+    const LightView<double> view = ViewOf(light, Vec3d{});
+    EXPECT_LT(Length(view.to_light - along), 2 * rounding) << distance;
+    EXPECT_NEAR(Length(view.to_light), 1, kRounding) << distance;
+    EXPECT_EQ(view.fall_off, 1);
+  }
+  EXPECT_EQ(ViewOf(test::PointLight({1, 2, 3}), Vec3d{1, 2, 3}).to_light, Vec3d{});
+}
+
 TEST(Shade, DirectionalLightsDoNotFade) {
   Light light = test::DirectionalLight({0, 0, 2});
   light.fade_distance = 1;
