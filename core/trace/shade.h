@@ -13,6 +13,23 @@
 
 namespace linetree {
 
+// Rounding of this file's functions against the same formulas in exact arithmetic on the same
+// arguments, unit vectors up to their own rounding; u = 2^-53.
+// ViewOf: every component of to_light, relative: one u for the segment, 5 for its length; and the
+// fall-off, whose distance has 3.5 u that are raised to a power of 8 at most, besides its own 12.
+inline constexpr double kToLightRounding = 0x1p-50;
+inline constexpr double kViewFallOffRounding = 0x1p-47;
+// Highlight, absolute, times 1 + exponent: 8 u for n.h (1 sum, 3 product, 2.5 length, 1 quotient),
+// which the power magnifies by the exponent, and 2 for pow.
+inline constexpr double kHighlightRounding = 0x1p-49;
+// Reflected, length of the difference: 3 u of n.d count twice, 2 for the product, 1 for the sum.
+inline constexpr double kReflectedRounding = 0x1p-49;
+// Refracted, with eta = ior_from / ior_into: whether the reflection is total may be wrong only
+// where the square of the transmitted ray's cosine c is within kRefractedRounding * (1 + eta^2) of
+// 0 (16 u: 8 of 1 - cos^2, 4 of eta^2, 1 of the sum, and the normal's own length); the direction is
+// off by at most the same over c.
+inline constexpr double kRefractedRounding = 0x1p-48;
+
 // How a light is seen from a point.
 template <class S>
 struct LightView {
