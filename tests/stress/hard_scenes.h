@@ -1,9 +1,7 @@
 // Scenes at the edges of what a scene may be. Deterministic in the random numbers given.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <string>
+#include <ostream>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -48,6 +46,8 @@ struct NamedScene {
   const char* name;
   Scene (*make)(test::Random& random);
 };
+// How GoogleTest shows it.
+inline void PrintTo(const NamedScene& scene, std::ostream* out) { *out << scene.name; }
 const std::vector<NamedScene>& AllHardScenes();
 
 }  // namespace linetree::stress
