@@ -18,8 +18,17 @@ inline constexpr uint64_t kDefaultSeed = 20261122;
 uint64_t Seed();
 bool IsLong();
 
-// How often to do something.
-inline int Times(int in_short_form) { return IsLong() ? 20 * in_short_form : in_short_form; }
+// The address sanitizer takes some ten times as long.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr int kShare = 8;
+#else
+inline constexpr int kShare = 1;
+#endif
+
+// How often to do something; at least once.
+inline int Times(int in_short_form) {
+  return std::max(1, (IsLong() ? 20 * in_short_form : in_short_form) / kShare);
+}
 
 // An independent stream of random numbers for a test of that name.
 test::Random RandomFor(const std::string& name);
