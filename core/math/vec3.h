@@ -66,6 +66,16 @@ inline bool IsFinite(const Vec3d& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+// Rounding of the above in double, for what neither overflows nor underflows; u = 2^-53.
+// Dot: absolute, relative to |a.x b.x| + |a.y b.y| + |a.z b.z|: a product and two sums, 3 u; the
+// fourth covers what is of second order.
+inline constexpr double kDotRounding = 4 * 0x1p-53;
+// Cross, per component, relative to the sum of its two products: 2 u, and a third for second order.
+inline constexpr double kCrossRounding = 3 * 0x1p-53;
+// Normalized, per component, relative: half of a sum of squares' 3 u, and one u each for the root,
+// the reciprocal and the product, 4.5 u.
+inline constexpr double kNormalizedRounding = 5 * 0x1p-53;
+
 // Rows of a 3x3 matrix.
 struct Mat3 {
   std::array<Vec3d, 3> row{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};

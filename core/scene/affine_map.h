@@ -33,7 +33,17 @@ inline constexpr double kMinReciprocalCondition = 0x1p-40;
 // The inverse of the linear part, or INVALID_ARGUMENT ("transform: expected ...").
 absl::StatusOr<Mat3> InverseLinear(const AffineMap& map);
 
-// v / |v| without overflow or underflow on the way. Requires v finite and non-zero.
+// The result's product with the linear part differs from the identity, in the Frobenius norm, by at
+// most this times the product of the two's norms: each entry is a quotient of a sum of products and
+// a determinant, some 12 roundings of 2^-53, doubled and rounded up.
+inline constexpr double kInverseRounding = 0x1p-48;
+
+// Rounding of every entry of Rotation, times 1 + the angle in radians: the angle's two roundings,
+// the three of a sum of products of sine, cosine and the axis, whose own are 6; rounded up.
+inline constexpr double kRotationRounding = 0x1p-49;
+
+// v / |v| without overflow or underflow on the way. Requires v finite and non-zero. Components are
+// within kNormalizedRounding and one more rounding of 2^-53, relative (but for denormal ones).
 Vec3d Unit(const Vec3d& v);
 
 }  // namespace linetree

@@ -39,6 +39,13 @@ absl::Status ValidateCamera(const Camera& camera);
 // Requires ValidateCamera(camera).ok().
 CameraFrame FrameOf(const Camera& camera);
 
+// Rounding of EyeRays::Through: its direction is within
+//   kEyeRayRounding * (1 + tan(fov/2)) / sin(angle between view and up)
+// of the formula above. 30 roundings of 2^-53 lie between the camera and a pixel's direction: 6 of
+// F, 5 of up, 7 to R (whose length before it is scaled is that sine), 3 to U, 4 of the tangent,
+// which wide angles magnify, 5 of the sum and its length. Rounded up to 32.
+inline constexpr double kEyeRayRounding = 0x1p-48;
+
 // Eye rays of a picture of width x height pixels; pixel coordinates are continuous, the centre of
 // the top left pixel is (0.5, 0.5).
 class EyeRays {

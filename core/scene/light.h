@@ -22,6 +22,10 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
+// Rounding of FallOff, relative, for powers up to 8: the quotient's is raised to the power (8 of
+// 2^-53), pow adds 2, sum and quotient 2; rounded up to 16.
+inline constexpr double kFallOffRounding = 0x1p-49;
+
 // Fall-off of a point light at distance d: 2 / (1 + (d/D)^p), or 1 without fade distance.
 template <class S>
 S FallOff(const Light& light, const S& distance) {

@@ -2,12 +2,47 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "core/trace/intersect_planar.h"
 #include "core/trace/intersect_quadric.h"
 
 namespace linetree {
+
+// Rounding, with the condition k = ConditionOf(shape), the shape's middle m and its reach r about
+// m:
+//
+// * The point o + t d of a crossing is within kHitRounding * k * (|o - m| + |m| + r) of the surface
+//   of its face, also where the line grazes it and t itself is far off. Derivation: the chain from
+//   o to the point has some 16 roundings (3 to the shape's centre, 4 into object space, 6 in the
+//   root, 3 back), each of at most that length seen through the map and back; doubled.
+// * FacingNormal is within kNormalRounding * k^2 of the unit normal of the same point: 12 roundings
+//   (4 into object space, 4 back, 4 to unit length), each seen through the map twice; doubled.
+//   Times 1 / w on the lateral face of a frustum where its radius is w in object space (a cone's
+//   apex has no normal), and times the longest side over the least height in a triangle with
+//   normals whose mean is about as long as they are.
+inline constexpr double kHitRounding = 0x1p-48;
+inline constexpr double kNormalRounding = 0x1p-48;
+
+// Frobenius norms of the maps into object space and out of it, multiplied: 3 for balls and cubes,
+// and for shapes that are given in world space.
+inline double ConditionOf(const Shape& shape) {
+  return std::visit(
+      []<class T>(const T& s) {
+        if constexpr (requires { s.frame; }) {
+          double object = 0, world = 0;
+          for (size_t i = 0; i < 3; ++i) {
+            object += LengthSquared(s.frame.object_from_world.row[i]);
+            world += LengthSquared(s.frame.world_from_object.row[i]);
+          }
+          return std::sqrt(object) * std::sqrt(world);
+        } else {
+          return 3.0;
+        }
+      },
+      shape);
+}
 
 // All crossings of the whole line o + t d, t in (-inf, inf).
 template <class S>

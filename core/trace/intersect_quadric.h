@@ -4,8 +4,9 @@
 // zero downwards the line enters, upwards it leaves:
 //   t_in = (-b - s) / a,  t_out = (-b + s) / a,  s = sqrt(b^2 - a c), whatever the sign of a.
 // The discriminant is never computed as b^2 - a c, which cancels, but as a sum of squares of
-// components of p x q (Lagrange's identity). From a start on the surface (c = 0) the other root is
-// -2 b / a exactly.
+// components of p x q (Lagrange's identity). With a taper one of the squares is subtracted, and
+// they grow with |p|^2: there p is taken where the line is nearest to the object first. From a
+// start on the surface (c = 0) the other root is -2 b / a exactly.
 #pragma once
 
 #include <cmath>
@@ -78,6 +79,19 @@ LateralForm<S> LateralFormOf(const FrustumShape& shape, const ObjectLine<S>& lin
           p.x * p.x + p.y * p.y - w * w, xw * xw + yw * yw - xy * xy, slope};
 }
 
+// The form of the whole line from its point nearest to the base's centre, which lies at t = from.
+template <class S>
+struct WholeLateralForm {
+  LateralForm<S> form;
+  S from;
+};
+template <class S>
+WholeLateralForm<S> WholeLateralFormOf(const FrustumShape& shape, const ObjectLine<S>& line) {
+  const S square = LengthSquared(line.q);
+  const S from = square > 0 ? S(-Dot(line.p, line.q) / square) : S(0);
+  return {LateralFormOf(shape, ObjectLine<S>{line.p + line.q * from, line.q}), from};
+}
+
 // The part of a line inside the endless cone, one nappe (w >= 0) of it; false when there is none.
 //
 // With a > 0 the line cuts one nappe only; that it is the right one is left to the caller's test of
@@ -110,8 +124,11 @@ bool InsideCone(const LateralForm<S>& f, S& in, S& out) {
 template <class S>
 Crossings<S> OpenFrustumCrossings(const FrustumShape& shape, const ObjectLine<S>& line) {
   Crossings<S> crossings;
+  const auto [form, from] = WholeLateralFormOf(shape, line);
   S in, out;
-  if (!InsideCone(LateralFormOf(shape, line), in, out)) return crossings;
+  if (!InsideCone(form, in, out)) return crossings;
+  in += from;
+  out += from;
   // Also false where the line stays inside for ever: z is then infinite or not a number.
   const auto between_rims = [&](const S& t) {
     const S z = line.p.z + t * line.q.z;
@@ -127,11 +144,12 @@ Crossings<S> LineCrossings(const FrustumShape& shape, const Vec3<S>& origin,
                            const Vec3<S>& direction) {
   const ObjectLine<S> line = ToObject(shape.frame, origin, direction);
   if (shape.open) return OpenFrustumCrossings(shape, line);
+  const auto [form, from] = WholeLateralFormOf(shape, line);
   S in, out;
-  if (!InsideCone(LateralFormOf(shape, line), in, out)) return {};
+  if (!InsideCone(form, in, out)) return {};
   Chord<S> chord;
-  chord.Enter(in, kLateralFace);
-  chord.Leave(out, kLateralFace);
+  chord.Enter(in + from, kLateralFace);
+  chord.Leave(out + from, kLateralFace);
   const auto& [p, q] = line;
   if (q.z == 0) {
     if (p.z < 0 || p.z > 1) return {};

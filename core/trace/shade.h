@@ -13,17 +13,46 @@
 
 namespace linetree {
 
+// Rounding of this file's functions against the same formulas in exact arithmetic on the same
+// arguments, unit vectors up to their own rounding; u = 2^-53.
+// ViewOf: every component of to_light, relative: one u for the segment, 5 for its length; and the
+// fall-off, whose distance has 3.5 u that are raised to a power of 8 at most, besides its own 12.
+inline constexpr double kToLightRounding = 0x1p-50;
+inline constexpr double kViewFallOffRounding = 0x1p-47;
+// Highlight, absolute, times 1 + exponent: 8 u for n.h (1 sum, 3 product, 2.5 length, 1 quotient),
+// which the power magnifies by the exponent, and 2 for pow.
+inline constexpr double kHighlightRounding = 0x1p-49;
+// Reflected, length of the difference: 3 u of n.d count twice, 2 for the product, 1 for the sum.
+inline constexpr double kReflectedRounding = 0x1p-49;
+// Refracted, with eta = ior_from / ior_into: whether the reflection is total may be wrong only
+// where the square of the transmitted ray's cosine c is within kRefractedRounding * (1 + eta^2) of
+// 0 (16 u: 8 of 1 - cos^2, 4 of eta^2, 1 of the sum, and the normal's own length); the direction is
+// off by at most the same over c.
+inline constexpr double kRefractedRounding = 0x1p-48;
+
 // How a light is seen from a point.
 template <class S>
 struct LightView {
-  Vec3<S> to_light;  // unit
+  Vec3<S> to_light;  // unit; zero where the light itself is, which faces nothing
   S fall_off;        // factor on Light::irradiance
 };
+
+// Below this distance the squares of its components lose bits to underflow, in the end all of them.
+// At 2^-484 the square is 2^-968: its last bit is 2^-1021, a normal number.
+inline constexpr double kNearLight = 0x1p-484;
+
 template <class S>
 LightView<S> ViewOf(const Light& light, const Vec3<S>& point) {
   if (light.kind == LightKind::kDirectional) return {CastVec3<S>(light.to_light), S(1)};
   const Vec3<S> segment = -(point - light.position);
   const S distance = Length(segment);
+  if (distance < kNearLight) {
+    // Scaled up by a power of two, which is exact.
+    const Vec3<S> scaled = segment * S(0x1p+600);
+    const S length = Length(scaled);
+    const Vec3<S> to_light = length > 0 ? scaled * (S(1) / length) : Vec3<S>{};
+    return {to_light, FallOff(light, S(length * S(0x1p-600)))};
+  }
   return {segment * (S(1) / distance), FallOff(light, distance)};
 }
 

@@ -62,5 +62,36 @@ TEST(Mat3, RowsMultiplyAndColumnsMultiplyTransposed) {
   }
 }
 
+// Against long double, over components of all magnitudes.
+TEST(Vec3, RoundingIsAsPublished) {
+  using Wide = long double;
+  test::Random random(5);
+  double dot = 0, cross = 0, normalized = 0;
+  const auto component = [&] { return (random.Below(2) * 2 - 1) * random.LogUniform(1e-12, 1e12); };
+  for (int i = 0; i < 300'000; ++i) {
+    Vec3d a{component(), component(), component()};
+    const Vec3d b{component(), component(), component()};
+    if (i % 2 == 0) a = a - b * (Dot(a, b) / Dot(b, b));  // products that cancel
+    if (i % 7 == 0) a[i % 3] = 0;
+    const Vec3<Wide> wa = CastVec3<Wide>(a), wb = CastVec3<Wide>(b);
+    const Wide sum = std::abs(wa.x * wb.x) + std::abs(wa.y * wb.y) + std::abs(wa.z * wb.z);
+    const auto off = [](double x, Wide truth) { return static_cast<double>(std::abs(x - truth)); };
+    dot = std::max(dot, off(Dot(a, b), Dot(wa, wb)) / static_cast<double>(sum));
+    const Vec3d c = Cross(a, b), n = Normalized(a);
+    const Vec3<Wide> wc = Cross(wa, wb), wn = Normalized(wa);
+    for (int k = 0; k < 3; ++k) {
+      const int p = (k + 1) % 3, q = (k + 2) % 3;
+      const Wide products = std::abs(wa[p] * wb[q]) + std::abs(wa[q] * wb[p]);
+      if (products > 0) cross = std::max(cross, off(c[k], wc[k]) / static_cast<double>(products));
+      if (a[k] != 0) normalized = std::max(normalized, off(n[k], wn[k]) / std::abs(n[k]));
+    }
+  }
+  std::printf("largest errors: Dot %.3g of %.3g, Cross %.3g of %.3g, Normalized %.3g of %.3g\n",
+              dot, kDotRounding, cross, kCrossRounding, normalized, kNormalizedRounding);
+  EXPECT_LE(dot, kDotRounding);
+  EXPECT_LE(cross, kCrossRounding);
+  EXPECT_LE(normalized, kNormalizedRounding);
+}
+
 }  // namespace
 }  // namespace linetree

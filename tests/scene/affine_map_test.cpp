@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "tests/support/random.h"
+
 namespace linetree {
 namespace {
 
@@ -55,6 +59,80 @@ TEST(Unit, SurvivesTheEndsOfTheRange) {
   for (const double size : {4.9e-324, 1e-300, 1.0, 1e300, 1.7e308}) {
     EXPECT_DOUBLE_EQ(Length(Unit({size, 0, size})), 1) << size;
   }
+}
+
+double FrobeniusNorm(const Mat3& m) {
+  return std::sqrt(LengthSquared(m.row[0]) + LengthSquared(m.row[1]) + LengthSquared(m.row[2]));
+}
+
+TEST(InverseLinear, RoundingIsAsPublished) {
+  test::Random random(6);
+  double largest = 0;
+  int inverted = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    AffineMap map;
+    for (Vec3d& row : map.linear.row) row = random.InCube(1) * random.LogUniform(1e-3, 1e3);
+    if (i % 2 == 0) map.linear.row[2] = map.linear.row[0] + random.InCube(1e-9);  // nearly flat
+    const auto inverse = InverseLinear(map);
+    if (!inverse.ok()) continue;
+    ++inverted;
+    long double square = 0;
+    for (size_t r = 0; r < 3; ++r) {
+      const auto row = MultiplyTransposed(map.linear, CastVec3<long double>(inverse->row[r]));
+      for (int c = 0; c < 3; ++c) {
+        const long double off = row[c] - (static_cast<int>(r) == c ? 1 : 0);
+        square += off * off;
+      }
+    }
+    largest = std::max(largest, static_cast<double>(std::sqrt(square)) /
+                                    (FrobeniusNorm(map.linear) * FrobeniusNorm(*inverse)));
+  }
+  std::printf("largest error %.3g, bound %.3g, each times the condition\n", largest,
+              kInverseRounding);
+  EXPECT_LE(largest, kInverseRounding);
+  EXPECT_GT(inverted, 90'000);
+}
+
+// Rodrigues' formula in a wider type.
+TEST(Rotation, RoundingIsAsPublished) {
+  using Wide = long double;
+  test::Random random(7);
+  double largest = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const Vec3d axis = random.Direction() * random.LogUniform(1e-9, 1e9);
+    const double angle_deg = random.Uniform(-1, 1) * random.LogUniform(1e-9, 1e5);
+    const Mat3 turn = Rotation(axis, angle_deg).linear;
+    const Vec3<Wide> u = Normalized(CastVec3<Wide>(axis));
+    const Wide angle = angle_deg * (std::numbers::pi_v<Wide> / 180);
+    for (int c = 0; c < 3; ++c) {
+      Vec3<Wide> unit;
+      unit[c] = 1;
+      const Vec3<Wide> truth = unit * std::cos(angle) + Cross(u, unit) * std::sin(angle) +
+                               u * (u[c] * (1 - std::cos(angle)));
+      for (int r = 0; r < 3; ++r) {
+        const Wide off = std::abs(turn.row[static_cast<size_t>(r)][c] - truth[r]);
+        largest = std::max(largest, static_cast<double>(off / (1 + std::abs(angle))));
+      }
+    }
+  }
+  std::printf("largest error %.3g, bound %.3g, each times 1 + angle\n", largest, kRotationRounding);
+  EXPECT_LE(largest, kRotationRounding);
+}
+
+TEST(Unit, RoundingIsThatOfItsParts) {
+  test::Random random(8);
+  double largest = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const Vec3d v = random.InCube(1) * random.LogUniform(1e-280, 1e280);
+    const Vec3<long double> truth = Normalized(CastVec3<long double>(v));
+    const Vec3d unit = Unit(v);
+    for (int k = 0; k < 3; ++k) {
+      const long double off = std::abs((unit[k] - truth[k]) / truth[k]);
+      largest = std::max(largest, static_cast<double>(off));
+    }
+  }
+  std::printf("largest error %.3g, bound %.3g\n", largest, kNormalizedRounding + 0x1p-53);
+  EXPECT_LE(largest, kNormalizedRounding + 0x1p-53);
 }
 
 }  // namespace

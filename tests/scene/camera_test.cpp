@@ -67,6 +67,45 @@ TEST(EyeRays, DirectionsAreUnit) {
   }
 }
 
+// The formula of camera.h, in a wider type.
+Vec3<long double> DirectionThrough(const Camera& camera, double x, double y, int width,
+                                   int height) {
+  using Wide = long double;
+  using WideVec = Vec3<Wide>;
+  const WideVec f = Normalized(CastVec3<Wide>(camera.look_at) - CastVec3<Wide>(camera.eye));
+  const WideVec r = Normalized(Cross(f, CastVec3<Wide>(camera.up)));
+  const Wide tangent = std::tan(camera.fov_deg * (std::numbers::pi_v<Wide> / 360));
+  const Wide across = (2 * Wide(x) / width - 1) * tangent;
+  const Wide along = (1 - 2 * Wide(y) / height) * tangent * height / width;
+  return Normalized(f + r * across + Cross(r, f) * along);
+}
+
+// All angles, far from the origin, with `up` down to the smallest angle that is accepted.
+TEST(EyeRays, RoundingIsAsPublished) {
+  Random random(3);
+  double largest = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    Camera camera = RandomCamera(random);
+    camera.eye = camera.eye * random.LogUniform(1, 1e6);
+    camera.look_at = camera.eye + random.Direction() * random.LogUniform(1e-3, 1e6);
+    const Vec3d view = camera.look_at - camera.eye;
+    if (i % 3 == 0)
+      camera.up = view + random.Direction() * (Length(view) * random.LogUniform(1e-4, 1));
+    camera.fov_deg = i % 5 == 0 ? 180 - random.LogUniform(1e-3, 1) : random.LogUniform(1e-3, 179);
+    if (!ValidateCamera(camera).ok()) continue;
+    const int width = random.Int(1, 4096), height = random.Int(1, 4096);
+    const double x = random.Uniform(0, width), y = random.Uniform(0, height);
+    const Vec3d direction = EyeRays(camera, width, height).Through(x, y).direction;
+    const auto off =
+        CastVec3<long double>(direction) - DirectionThrough(camera, x, y, width, height);
+    const double sine = Length(Cross(Normalized(view), Normalized(camera.up)));
+    const double tangent = std::tan(camera.fov_deg * std::numbers::pi / 360);
+    largest = std::max(largest, static_cast<double>(Length(off)) * sine / (1 + tangent));
+  }
+  std::printf("largest error %.3g, bound %.3g\n", largest, kEyeRayRounding);
+  EXPECT_LE(largest, kEyeRayRounding);
+}
+
 TEST(ValidateCamera, NamesTheFieldAndWhatWasExpected) {
   EXPECT_TRUE(ValidateCamera(Camera{}).ok());
   struct Case {
