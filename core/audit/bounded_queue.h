@@ -6,6 +6,7 @@
 // Thread safety: TryPush from any thread, TryPop from one.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstddef>
@@ -19,8 +20,9 @@ namespace linetree {
 template <class T>
 class BoundedQueue {
  public:
-  // Room for `places` entries at least (the next power of two).
-  explicit BoundedQueue(size_t places) : places_(std::bit_ceil(places)) {
+  // Room for `places` entries at least: the next power of two, and two or more. With a single place
+  // "holds an entry" and "free for the next push" would be the same ticket.
+  explicit BoundedQueue(size_t places) : places_(std::bit_ceil(std::max<size_t>(places, 2))) {
     for (size_t i = 0; i < places_.size(); ++i) places_[i].ticket = i;
   }
 

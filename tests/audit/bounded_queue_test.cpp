@@ -36,6 +36,18 @@ TEST(BoundedQueueTest, RefusesWhatItHasNoPlaceForAndLeavesItAlone) {
   EXPECT_TRUE(queue.TryPush(refused));
 }
 
+TEST(BoundedQueueTest, TheSmallestLosesNothingEither) {
+  for (const size_t places : {0, 1, 2}) {
+    BoundedQueue<int> queue(places);
+    int pushed = 0;
+    for (int i = 0; i < 5; ++i) pushed += queue.TryPush(i);
+    EXPECT_EQ(pushed, 2);
+    EXPECT_EQ(queue.TryPop(), 0);
+    EXPECT_EQ(queue.TryPop(), 1);
+    EXPECT_EQ(queue.TryPop(), std::nullopt);
+  }
+}
+
 TEST(BoundedQueueTest, KeepsNothingOfWhatWasTaken) {
   BoundedQueue<std::shared_ptr<int>> queue(2);
   auto entry = std::make_shared<int>(1);

@@ -16,7 +16,8 @@ using ::testing::HasSubstr;
 class ServerCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    server_ = new ServerProcess({"--scene", "gap=" + SourceFile("scenes/gap.textproto")});
+    server_ =
+        new ServerProcess({"--audit", "1", "--scene", "gap=" + SourceFile("scenes/gap.textproto")});
   }
   static void TearDownTestSuite() {
     delete server_;
@@ -104,6 +105,7 @@ TEST_F(ServerCommand, StatsShowWhatWasDone) {
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("gap "));
   EXPECT_THAT(run.out, HasSubstr("Cells of gap by verdict"));
+  EXPECT_THAT(run.out, HasSubstr("Audit of a share of 1 of the answers"));
   run = Run({"stats", "--scene", "gap", "--json"});
   ASSERT_EQ(run.exit_status, 0) << run.err;
   const nlohmann::json json = nlohmann::json::parse(run.out);
@@ -111,6 +113,9 @@ TEST_F(ServerCommand, StatsShowWhatWasDone) {
   EXPECT_EQ(json["scenes"][0]["scene"], "gap");
   EXPECT_GE(json["scenes"][0]["frames"], 1);
   EXPECT_GT(json["memory_budget_bytes"], 0);
+  EXPECT_EQ(json["audit_share"], 1);
+  EXPECT_EQ(json["scenes"][0]["audit"]["violations"], 0);
+  EXPECT_TRUE(json["scenes"][0]["audit"]["checked"].is_number_unsigned());
 }
 
 TEST_F(ServerCommand, BenchErrorLeavesNothingBehind) {
