@@ -1,0 +1,136 @@
+#include "core/certify/diffuse_summer.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/trace/shade.h"
+#include "tests/support/random_scene.h"
+
+namespace linetree {
+namespace {
+
+// One object under many lights, all of them on.
+Scene LitObject(test::ShapeKind kind, test::Random& random) {
+  Scene scene;
+  test::AddMaterial(scene, test::Matte({0.5, 0.6, 0.7}));
+  test::AddObject(scene, test::RandomShape(kind, random, 1, random.InCube(3)), 0);
+  for (int i = 0; i < 12; ++i) {
+    scene.lights.push_back(test::PointLight(
+        scene.objects[0].bounds.Center() + random.Direction() * random.Uniform(1.5, 9),
+        test::RandomRgb(random, 1)));
+  }
+  scene.lights.push_back(test::DirectionalLight(random.Direction(), {0.3, 0.2, 0.1}));
+  return scene;
+}
+
+CellLights AllOn(const Scene& scene) {
+  CellLights lights;
+  lights.lights.resize(scene.lights.size());
+  for (LightList& list : lights.lights) list.knowledge = LightKnowledge::kOn;
+  return lights;
+}
+
+Rgb ExactSum(const Scene& scene, const Hit& hit) {
+  Rgb sum;
+  for (const Light& light : scene.lights) {
+    const LightView<double> view = ViewOf(light, hit.point);
+    const double cosine = Dot(hit.normal, view.to_light);
+    if (cosine > 0) sum += Scaled(light.irradiance, cosine);
+  }
+  return sum;
+}
+
+struct Seen {
+  int sums = 0, points = 0;
+  double largest = 0;  // error relative to the bound
+};
+
+// Points of the object that random rays meet, each with the sum of its own cell.
+void Check(const Scene& scene, int depth, test::Random& random, Seen& seen) {
+  const Tracer tracer(scene);
+  const DiffuseSummer summer(scene);
+  const SurfaceChart chart(scene.objects[0]);
+  std::map<std::tuple<int, uint32_t, uint32_t>, CellLights> cells;
+  for (int i = 0; i < 300; ++i) {
+    const Box3& bounds = scene.objects[0].bounds;
+    const Vec3d eye = bounds.Center() + random.Direction() * 5;
+    const Hit hit = tracer.Intersect(eye, random.InBox(bounds.min, bounds.max) - eye, {});
+    if (!hit.IsHit() || hit.side != Side::kOutside || !chart.IsOn(hit.face, hit.point)) continue;
+    const SurfacePoint at = chart.Locate(hit.face, hit.point);
+    const SurfaceCell cell = CellAt(at, depth);
+    const auto [found, is_new] = cells.try_emplace({at.patch, cell.i, cell.j});
+    if (is_new) {
+      found->second = AllOn(scene);
+      summer.AddSums(0, chart, at.patch, cell, found->second);
+    }
+    const auto& sum = found->second.sums[chart.IsOtherSide(hit.normal) ? 1 : 0];
+    if (!sum) continue;
+    ++seen.points;
+    seen.sums += is_new ? 1 : 0;
+    const double scale = std::ldexp(1.0, depth);
+    const Rgb answer = sum->At(at.u * scale - cell.i, at.v * scale - cell.j);
+    const Rgb exact = ExactSum(scene, hit);
+    for (int c = 0; c < 3; ++c) {
+      const double error = std::abs(answer[c] - exact[c]);
+      ASSERT_LE(error, sum->spread * exact[c] + 1e-300) << "depth " << depth;
+      seen.largest = std::max(seen.largest, error / (sum->spread * exact[c]));
+    }
+  }
+}
+
+TEST(DiffuseSummer, SumsAreWithinTheirBounds) {
+  test::Random random(5);
+  for (const test::ShapeKind kind : test::kShapeKinds) {
+    Seen seen;
+    for (int scene = 0; scene < 12; ++scene) {
+      const Scene lit = LitObject(kind, random);
+      for (const int depth : {1, 3, 5}) Check(lit, depth, random, seen);
+    }
+    RecordProperty("largest_error_over_bound", std::to_string(seen.largest));
+    if (!std::get_if<TriangleShape>(&LitObject(kind, random).objects[0].shape)) {
+      EXPECT_GT(seen.points, 300);
+      EXPECT_GT(seen.largest, 0.02) << "a bound that wide says nothing";
+    }
+  }
+}
+
+TEST(DiffuseSummer, AFloorUnderALampIsSummedByTheMetre) {
+  Scene scene;
+  test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
+  test::AddObject(scene, test::Polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}), 0);
+  for (int i = 0; i < 4; ++i) scene.lights.push_back(test::PointLight({0.4 * i, 0.3 * i, 2.5}));
+  CellLights lights = AllOn(scene);
+  const SurfaceChart chart(scene.objects[0]);
+  DiffuseSummer(scene).AddSums(0, chart, 0, {}, lights);
+  const auto& above = lights.sums[chart.IsOtherSide({0, 0, 1}) ? 1 : 0];
+  ASSERT_TRUE(above);
+  EXPECT_LT(above->spread, 0.03);
+  EXPECT_TRUE(lights.lights[0].summed);
+}
+
+TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
+  Scene scene;
+  test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
+  test::AddObject(scene, test::Polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}), 0);
+  const SurfaceChart chart(scene.objects[0]);
+  const auto summed = [&] {
+    CellLights lights = AllOn(scene);
+    DiffuseSummer(scene).AddSums(0, chart, 0, {}, lights);
+    return lights.sums[chart.IsOtherSide({0, 0, 1}) ? 1 : 0] != nullptr;
+  };
+  for (int i = 0; i < 4; ++i) scene.lights.push_back(test::PointLight({0, 0, 2.0 + i}));
+  EXPECT_TRUE(summed());
+  scene.lights.pop_back();
+  EXPECT_FALSE(summed()) << "three are evaluated one by one";
+  scene.lights.push_back(test::PointLight({0.1, 0, 0}));
+  EXPECT_FALSE(summed()) << "a light in the plane itself";
+  scene.lights.back() = test::PointLight({0, 0, 0.01});
+  EXPECT_FALSE(summed()) << "a light so near that the bound is useless";
+  scene.lights.back() = test::PointLight({0, 0, 3});
+  scene.lights.back().fade_distance = 1;
+  EXPECT_FALSE(summed()) << "fall-off has no bound yet";
+}
+
+}  // namespace
+}  // namespace linetree
