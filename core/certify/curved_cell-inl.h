@@ -97,6 +97,7 @@ class CurvedCell {
     const Jet x[4] = {cosine, -sine, -cosine, sine};  // of quadrant 0, 1, 2, 3
     const Jet y[4] = {sine, cosine, -sine, -cosine};
     const Jet w = v * shape_.taper + shape_.base_radius;
+    if (!(w.lo() > kApexShare * shape_.FrameScale())) return;
     object_point_ = {x[patch] * w, y[patch] * w, v};
     // The gradient (x, y, -taper w), divided by w.
     Finish({x[patch], y[patch], Jet::Constant(-shape_.taper)});

@@ -254,7 +254,9 @@ class HitEvaluator {
     }
     Vector gradient = m;
     if (shape.kind == JetShape::Kind::kFrustum) {
-      gradient.z = (m.z * shape.taper + shape.base_radius) * -shape.taper;
+      const Jet w = m.z * shape.taper + shape.base_radius;
+      if (!(w.lo() > kApexShare * shape.FrameScale())) return false;
+      gradient.z = w * -shape.taper;
     }
     const Vector outward = MultiplyTransposed(shape.frame.object_from_world, gradient);
     if (shape.radius > 0) {

@@ -91,6 +91,14 @@ const Plane* JetShape::PlaneOf(int face) const {
   return nullptr;
 }
 
+double JetShape::FrameScale() const {
+  double rows = 0;
+  for (const Vec3d& row : frame.object_from_world.row) {
+    rows = std::max(rows, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+  }
+  return 1 + rows * reach;
+}
+
 JetShape MakeJetShape(const Object& object) {
   Maker maker;
   std::visit([&](const auto& s) { maker(s); }, object.shape);

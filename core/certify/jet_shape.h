@@ -34,8 +34,14 @@ struct JetShape {
 
   // The plane of a face, or null for the curved face.
   const Plane* PlaneOf(int face) const;
+  // How accurately points of the object are known in its own frame's units, but for the rounding of
+  // rays that come from farther away than the world's origin: a multiple of 2^-53.
+  double FrameScale() const;
   bool IsThin() const { return kind == Kind::kPolygon || kind == Kind::kDisc; }
 };
+
+// Near a cone's apex rounding turns the normal: no nearer than this share of FrameScale.
+inline constexpr double kApexShare = 0x1p-20;
 
 JetShape MakeJetShape(const Object& object);
 

@@ -109,6 +109,22 @@ TEST(DiffuseSummer, AFloorUnderALampIsSummedByTheMetre) {
   EXPECT_TRUE(lights.lights[0].summed);
 }
 
+// The tracer gives a cone's apex a normal of its own.
+TEST(DiffuseSummer, NoSumReachesAnApex) {
+  Scene scene;
+  test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
+  test::AddObject(scene, test::Frustum({0, 0, 0}, {0, 0, 1}, 1, 0), 0);
+  for (int i = 0; i < 5; ++i) scene.lights.push_back(test::PointLight({3.0 + i, 1, 8}));
+  const SurfaceChart chart(scene.objects[0]);
+  const auto has_sum = [&](uint32_t row) {
+    CellLights lights = AllOn(scene);
+    DiffuseSummer(scene).AddSums(0, chart, 0, {3, 2, row}, lights);
+    return lights.sums[0] != nullptr;
+  };
+  EXPECT_TRUE(has_sum(6));
+  EXPECT_FALSE(has_sum(7));
+}
+
 TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
   Scene scene;
   test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
