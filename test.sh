@@ -47,8 +47,8 @@ failed=0
 broken=()
 summary=()
 
-# Tests that a sanitizer build would only repeat: pictures against other programs, where the code
-# under test is the same as in the unit tests, and the checks of the source text.
+# Tests that a sanitizer build would only repeat: pictures against other programs and the long audit,
+# where the code under test is the same as in the unit tests, and the checks of the source text.
 excluded_of() {
   case "$1" in
     Release) echo '^$' ;;

@@ -55,8 +55,9 @@ TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
 }
 
 std::vector<std::string> BenchAudit(std::vector<std::string> more) {
-  more.insert(more.begin(), {"bench", "audit", "--threads", "2"});
-  return more;
+  std::vector<std::string> words = {"bench", "audit", "--threads", "2"};
+  for (std::string& word : more) words.push_back(std::move(word));
+  return words;
 }
 
 TEST(BenchCommand, AuditFindsNothingInCertifiedAnswers) {
@@ -75,14 +76,14 @@ TEST(BenchCommand, AuditFindsNothingInCertifiedAnswers) {
   EXPECT_TRUE(json["violations"].empty());
 }
 
-// The paper's judge is a heuristic that mirrors and glass deceive.
+// The paper's judge is a heuristic that abutting walls deceive.
 TEST(BenchCommand, AuditEndsWithOneWhenAnAnswerBreaksThePromise) {
   TempDir dir;
   const Finished run =
-      RunLinetree(BenchAudit({"--queries", "400000", "--seed", "3", "--judge", "paper", "--family",
-                              "glass", "--epsilon", "0.02", "--json", dir.File("audit.json")}));
+      RunLinetree(BenchAudit({"--queries", "300000", "--seed", "3", "--judge", "paper", "--family",
+                              "walls", "--epsilon", "0.02", "--json", dir.File("audit.json")}));
   EXPECT_EQ(run.exit_status, 1) << run.out;
-  EXPECT_THAT(run.out, HasSubstr("\nscene=\"glass 0x"));
+  EXPECT_THAT(run.out, HasSubstr("\nscene=\"walls 0x"));
   const auto json = nlohmann::json::parse(std::ifstream(dir.File("audit.json")));
   EXPECT_GT(json["total"]["violations"], 0);
   ASSERT_FALSE(json["violations"].empty());
