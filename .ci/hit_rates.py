@@ -2,8 +2,9 @@
 
 Reads the --stats files of three flights along one path, prints a table with a line for each frame,
 and writes it to FOLDER/hit_rates.txt and its numbers to FOLDER/hit_rates.json. The hit rate is the
-share of the pixels that show an object and were interpolated; intersect and shade are ratios to the
-classical frame's counts (paper, section 8).
+share of the pixels that show an object and were answered without a search of the scene but for
+their eye ray's hit; intersect and shade are ratios to the classical frame's counts (paper, section
+8).
 """
 
 import json
@@ -17,7 +18,8 @@ def frames(path):
 
 def row(frame, classical):
     return {
-        "hit_rate": frame["interpolated"] / max(1, frame["pixels"] - frame["background"]),
+        "hit_rate": (frame["interpolated"] + frame["replayed"])
+                    / max(1, frame["pixels"] - frame["background"]),
         "intersect_ratio": frame["intersect"] / max(1, classical["intersect"]),
         "shade_ratio": frame["shade"] / max(1, classical["shade"]),
         "wall_ms": frame["wall_ms"],

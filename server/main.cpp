@@ -13,7 +13,7 @@ namespace {
 struct Flags {
   std::vector<std::string> scenes;
   std::string log_level = "info";
-  std::string judge = "paper";
+  std::string judge = "certified";
   int64_t drain_timeout_ms = 0;
 };
 

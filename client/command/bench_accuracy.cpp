@@ -22,7 +22,7 @@ struct BenchAccuracyFlags {
                                      "scenes/spd/rings_1.nff", "scenes/spd/lattice_2.nff"};
   SizeFlags size;
   std::vector<double> epsilons = {0.5, 0.25, 0.1, 0.05};
-  JudgeKind judge = JudgeKind::kPaper;
+  JudgeKind judge = JudgeKind::kCertified;
   std::string json;
   bool quiet = false;
 };

@@ -23,7 +23,7 @@ struct BenchErrorFlags {
   SceneFlags scene{.scene = "scenes/room.textproto"};
   ViewFlags view;
   SizeFlags size;
-  JudgeKind judge = JudgeKind::kPaper;
+  JudgeKind judge = JudgeKind::kCertified;
   PathLimits limits;
   std::vector<double> epsilons = {0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.25, 0.35, 0.5, 0.75, 1};
   int repeats = 3;

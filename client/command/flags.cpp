@@ -131,12 +131,11 @@ void AddJudgeFlag(CLI::App& app, JudgeKind& judge) {
   const std::map<std::string, JudgeKind> judges = {{"paper", JudgeKind::kPaper},
                                                    {"certified", JudgeKind::kCertified}};
   app.add_option("--judge", judge,
-                 "paper: cells interpolate radiance within epsilon, as far as its tests see;\n"
-                 "certified: cells of surfaces prove which lights reach them, and every answer is "
-                 "the classical one")
+                 "certified: every answer is proved to be within epsilon, at 0 bit for bit;\n"
+                 "paper: within epsilon as far as the paper's tests see")
       ->transform(CLI::CheckedTransformer(judges))
       ->type_name("JUDGE")
-      ->default_str("paper")
+      ->default_str("certified")
       ->group("Rendering");
 }
 

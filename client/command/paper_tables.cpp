@@ -127,6 +127,7 @@ absl::StatusOr<Sequence> MeasureSequence(const SequenceSpec& spec,
           absl::StrCat(spec.scene_file, ": expected a camera named \"", name, "\""));
     }
     FrameRequest request{*camera, options.width, options.height, {}};
+    request.options.judge = JudgeKind::kPaper;
     request.options.max_relative_error = spec.epsilon;
     const auto cached = host.RenderFrame(request, pool);
     if (!cached.ok()) return cached.status();

@@ -21,7 +21,7 @@
 namespace linetree {
 
 // With fewer lights on, evaluating them one by one is as fast.
-inline constexpr int kMinSummedLights = 4;
+inline constexpr int kMinSummedLights = 3;
 
 // Sums with a larger relative error are not kept.
 inline constexpr double kMaxSumSpread = 0.5;

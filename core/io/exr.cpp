@@ -175,11 +175,11 @@ absl::Status CheckAttributes(const Frame& frame) {
 // An unknown number (a file from elsewhere) is refused rather than cast.
 absl::Status UnpackLayers(const UintLayers& layers, Frame& frame) {
   for (size_t i = 0; i < layers.object.size(); ++i) {
-    if (layers.source[i] > static_cast<uint32_t>(Source::kTraced) ||
+    if (layers.source[i] >= static_cast<uint32_t>(kSourceCount) ||
         layers.verdict[i] >= static_cast<uint32_t>(kVerdictCount)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("pixel ", i, ": expected a source of at most 2 and a verdict below ",
-                       kVerdictCount, ", found ", layers.source[i], " and ", layers.verdict[i]));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "pixel ", i, ": expected a source below ", kSourceCount, " and a verdict below ",
+          kVerdictCount, ", found ", layers.source[i], " and ", layers.verdict[i]));
     }
     frame.object[i] = static_cast<int32_t>(layers.object[i]);
     frame.source[i] = static_cast<Source>(layers.source[i]);

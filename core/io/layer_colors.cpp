@@ -106,11 +106,13 @@ const std::array<LegendEntry, kVerdictCount>& VerdictLegend() {
   return kLegend;
 }
 
-const std::array<LegendEntry, 3>& SourceLegend() {
-  static constexpr std::array<LegendEntry, 3> kLegend = {{
+const std::array<LegendEntry, kSourceCount>& SourceLegend() {
+  static constexpr std::array<LegendEntry, kSourceCount> kLegend = {{
       {"background", "black", {0, 0, 0}},
       {"interpolated", "blue", {60, 120, 220}},
       {"traced", "orange", {240, 150, 40}},
+      {"replayed", "green", {70, 170, 90}},
+      {"residual", "yellow", {235, 220, 90}},
   }};
   return kLegend;
 }

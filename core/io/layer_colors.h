@@ -36,7 +36,7 @@ struct LegendEntry {
 // show. Certified pixels show the picture, dimmed and grey; their entry is the brightest such grey.
 const std::array<LegendEntry, kVerdictCount>& VerdictLegend();
 // By Source.
-const std::array<LegendEntry, 3>& SourceLegend();
+const std::array<LegendEntry, kSourceCount>& SourceLegend();
 
 // Linear value to its 8-bit sRGB code (IEC 61966-2-1); clamped to [0, 1], NaN is 0.
 uint8_t SrgbCode(double linear);

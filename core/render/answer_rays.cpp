@@ -221,8 +221,11 @@ void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCa
   RayCounts own;
   answer.radiance = tracer_.RadianceFromHit(hit, rays_[ray].origin, direction, options_.limits,
                                             lights, &paths, own);
-  if (own.intersect == 0) {
-    answer.source = own.summed > 0 ? Source::kInterpolated : Source::kReplayed;
+  if (own.intersect == 0 && own.summed > 0) {
+    answer.source = Source::kInterpolated;
+    answer.verdict = Verdict::kCertified;
+  } else if (own.intersect == 0) {
+    answer.source = Source::kReplayed;
   } else if (own.listed + own.listed_branches > 0) {
     answer.source = Source::kResidual;
   }

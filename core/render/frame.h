@@ -21,6 +21,7 @@ enum class Source : uint8_t {
   kReplayed = 3,  // evaluated anew, without any search of the scene but for the eye ray's hit
   kResidual = 4,  // evaluated anew, with some searches saved
 };
+inline constexpr int kSourceCount = 5;
 
 // Counters of one frame or batch. interpolated + traced + background == pixels.
 struct FrameStats {

@@ -8,13 +8,13 @@ namespace linetree {
 
 enum class Mode { kCached, kClassical };
 enum class JudgeKind {
-  kPaper,      // linetrees and the paper's tests: radiance is interpolated, epsilon is aimed at
-  kCertified,  // surface trees: light visibility is proved, every answer is the classical one
+  kPaper,      // linetrees and the paper's tests: epsilon is aimed at
+  kCertified,  // surface trees and certified linetrees: epsilon is proved
 };
 
 struct RenderOptions {
   Mode mode = Mode::kCached;
-  JudgeKind judge = JudgeKind::kPaper;
+  JudgeKind judge = JudgeKind::kCertified;
   // The promise: |answer - classical| <= max_relative_error * max(classical, RadianceFloor(scene)).
   double max_relative_error = 0.1;
   PathLimits limits;

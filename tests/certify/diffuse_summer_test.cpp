@@ -135,10 +135,12 @@ TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
     DiffuseSummer(scene).AddSums(0, chart, 0, {}, lights);
     return lights.sums[chart.IsOtherSide({0, 0, 1}) ? 1 : 0] != nullptr;
   };
-  for (int i = 0; i < 4; ++i) scene.lights.push_back(test::PointLight({0, 0, 2.0 + i}));
+  for (int i = 0; i < kMinSummedLights; ++i) {
+    scene.lights.push_back(test::PointLight({0, 0, 2.0 + i}));
+  }
   EXPECT_TRUE(summed());
   scene.lights.pop_back();
-  EXPECT_FALSE(summed()) << "three are evaluated one by one";
+  EXPECT_FALSE(summed()) << "few are evaluated one by one";
   scene.lights.push_back(test::PointLight({0.1, 0, 0}));
   EXPECT_FALSE(summed()) << "a light in the plane itself";
   scene.lights.back() = test::PointLight({0, 0, 0.01});

@@ -17,6 +17,7 @@ FrameRequest Request(const Scene& scene, Mode mode, double epsilon) {
   request.width = 128;
   request.height = 128;
   request.options.mode = mode;
+  request.options.judge = JudgeKind::kPaper;
   request.options.max_relative_error = epsilon;
   return request;
 }
