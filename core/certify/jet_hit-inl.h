@@ -4,13 +4,18 @@
 // meet it inside the face; IsContained says whether they certainly do. Formulas are those in which
 // jets stay narrow (DESIGN, section 5): the discriminant of a quadric as |q|^2 - |p x q|^2, its far
 // side as -2B/A, containment in planar faces as a polynomial instead of at the rational hit point.
+#if defined(LINETREE_CORE_CERTIFY_JET_HIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#undef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#endif
+
 #include "core/certify/jet_shape.h"
 #include "core/jet/jet_vector-inl.h"
 #include "core/trace/hit.h"
 
-#ifndef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
-#define LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 // Every decision about a sign keeps away from zero by this share of the lengths involved, and by
@@ -22,7 +27,7 @@ inline constexpr double kSignMargin = 0x1p-34;
 inline constexpr double kDrift = 0x1p-30;
 
 template <size_t D>
-double MarginOf(const CornerJet<D>& f, double scale) {
+double MarginOf(const LooseJet<D>& f, double scale) {
   return kSignMargin * scale + kDrift * f.Variation();
 }
 template <size_t D>
@@ -139,8 +144,7 @@ class HitEvaluator {
       const Plane& opposite = hit.shape->edges[(i + 1) % 3];
       const Jet weight =
           Dot(hit.point - opposite.point, opposite.normal) * (1 / hit.shape->heights[i]);
-      const Vec3d& at = hit.shape->corner_normals[i];
-      sum = sum + Vector{weight * at.x, weight * at.y, weight * at.z};
+      sum = sum + hit.shape->corner_normals[i] * weight;
     }
     const Jet square = LengthSquared(sum);
     if (!(square.lo() > kSignMargin)) return false;
@@ -208,7 +212,7 @@ class HitEvaluator {
     if (ray_.between_planes) discriminant.AssumeConcave();
     if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * a.hi())) return false;
     const Jet root = SquareRoot(discriminant);
-    hit.t = (entering ? -b - root : root - b) * Inverse(a);
+    hit.t = Jet(entering ? -b - root : root - b) * Inverse(a);
     if (ray_.between_planes) hit.t.AssumeWithin(0, 1);
     if (!IsAhead(hit)) return false;
     return FinishCurved(root, p + q * hit.t, hit);
@@ -236,7 +240,7 @@ class HitEvaluator {
                              Square(p.x * q.y - p.y * q.x);
     if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * squares)) return false;
     const Jet root = SquareRoot(discriminant);
-    hit.t = (entering ? -b - root : root - b) * Inverse(a);
+    hit.t = Jet(entering ? -b - root : root - b) * Inverse(a);
     if (!IsAhead(hit)) return false;
     return FinishCurved(root, p + q * hit.t, hit);
   }
@@ -280,13 +284,14 @@ class HitEvaluator {
     const JetShape& shape = *hit.shape;
     const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
     const double w = hit.face == 1 ? shape.base_radius : shape.base_radius + shape.taper;
-    return IsNegative(Square(p.x) + Square(p.y) + -(w * w),
+    return IsNegative(Jet(Square(p.x) + Square(p.y) + -(w * w)),
                       ObjectScale(shape, ToObject(shape.frame)));
   }
   bool IsInsideDisc(const JetHit<D>& hit) const {
     const JetShape& shape = *hit.shape;
     const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
-    return IsNegative(Square(p.x) + Square(p.y) + -1.0, ObjectScale(shape, ToObject(shape.frame)));
+    return IsNegative(Jet(Square(p.x) + Square(p.y) + -1.0),
+                      ObjectScale(shape, ToObject(shape.frame)));
   }
 
   // With distances f, slopes f' from the hit's plane and e, e' from a side's, the hit's distance
@@ -312,5 +317,6 @@ class HitEvaluator {
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -1,15 +1,20 @@
 // What the lights add to the radiance of a bundle's hits, in jets; formulas as in
 // core/trace/shade.h but arranged so that jets stay narrow (DESIGN, section 5): n.(L - x) is
 // constant on a plane and linear on a sphere, (n.h)^2 = (n.l + n.v)^2 / (2 + 2 l.v).
+#if defined(LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#undef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#endif
+
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
 #include "core/certify/ray_bundle.h"
 #include "core/trace/shade.h"
 
-#ifndef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
-#define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 // An upright box about a cloud, two of its faces across `normal`.
@@ -132,12 +137,12 @@ class LightTerms {
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
-        strength = Inverse(Power(ratio, light.fade_power / 2) + 1.0) * 2.0;
+        strength = Inverse(Jet(Power(ratio, light.fade_power / 2) + 1.0)) * 2.0;
       }
     }
     cosine.AssumeWithin(-1, 1);
     const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
-    const auto faded = [&](const Jet& f) { return fades ? f * strength : f; };
+    const auto faded = [&](const Jet& f) -> Jet { return fades ? Jet(f * strength) : f; };
     if (!IsBlack(material.diffuse)) {
       sum_.Add(arriving * material.diffuse, faded(lit ? cosine : Positive(cosine)));
     }
@@ -171,7 +176,7 @@ class LightTerms {
     r.k = Max(zero, f.k);
     r.slack = f.slack;
     // Not smooth: no bound on derivatives is claimed, so any range of values makes the error.
-    r.d = r.s = IntervalPack<D>::All({-kUnbounded, kUnbounded});
+    r.ds = IntervalPack<2 * D>::All({-kUnbounded, kUnbounded});
     return r;
   }
   static constexpr double kUnbounded = 1e30;
@@ -182,7 +187,8 @@ class LightTerms {
     along.AssumeWithin(-1, 1);
     const Jet denominator = along * 2.0 + 2.0;
     if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
-    Jet square = Square(cosine + hit.cosine) * Inverse(denominator);
+    const Jet half = Square(cosine + hit.cosine);
+    Jet square = half * Inverse(denominator);
     square.AssumeWithin(0, 1);
     const double power = exponent / 2;
     const bool smooth = power >= 2 || power == 1 || power == 0;
@@ -197,5 +203,6 @@ class LightTerms {
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

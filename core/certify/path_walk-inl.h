@@ -1,4 +1,11 @@
 // Follows the paths of one cell in jets. See path_certifier.h.
+#if defined(LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#undef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#endif
+
 #include "core/certify/cell_paths.h"
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/light_terms-inl.h"
@@ -7,9 +14,7 @@
 #include "core/certify/ray_bundle.h"
 #include "core/trace/shade.h"
 
-#ifndef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
-#define LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 class PathWalk {
@@ -70,14 +75,12 @@ class PathWalk {
 
   static Vector Polynomial(const Vec3d& constant, const std::array<Vec3d, 4>& by,
                            const CellBox& box) {
-    Vector sum = Vector::Constant(constant);
-    for (size_t i = 0; i < 4; ++i) {
-      const Jet x = Jet::Variable(i, box.from[i], box.to[i]);
-      if (by[i].x != 0) sum.x = sum.x + x * by[i].x;
-      if (by[i].y != 0) sum.y = sum.y + x * by[i].y;
-      if (by[i].z != 0) sum.z = sum.z + x * by[i].z;
-    }
-    return sum;
+    const auto along = [&](double Vec3d::*axis) {
+      std::array<double, 4> coefficients;
+      for (size_t i = 0; i < 4; ++i) coefficients[i] = by[i].*axis;
+      return Jet::Affine(constant.*axis, coefficients, box.from, box.to);
+    };
+    return {along(&Vec3d::x), along(&Vec3d::y), along(&Vec3d::z)};
   }
 
   // The cell's rays at the object itself. The face is that of the centre ray; rays that meet others
@@ -200,7 +203,8 @@ class PathWalk {
       if (eta < 1) square.AssumeWithin(1 - eta * eta, 1);
       if (IsNegative(square, 1)) return Refraction::kTotal;
       if (!IsPositive(square, 1)) return Refraction::kUnknown;
-      refracted = leg.direction * eta + hit.normal * (hit.cosine * eta - SquareRoot(square));
+      const Jet across = hit.cosine * eta - SquareRoot(square);
+      refracted = leg.direction * eta + hit.normal * across;
     }
     if (!direction) return Refraction::kUnknown;
     middle_refracted = *direction;
@@ -288,7 +292,7 @@ class PathWalk {
     } else {
       const double far =
           Length(context_.world.Extent()) + Length(leg.middle_origin - context_.world.Center());
-      end = CloudOf(leg.origin + leg.direction * far);
+      end = CloudOf(Vector(leg.origin + leg.direction * far));
     }
     const RayBundle bundle(context_.scene, context_.search, leg.start, CloudOf(leg.origin), end);
     std::vector<int32_t> candidates =
@@ -339,5 +343,6 @@ inline CellPaths CertifyPaths(const PathCertifier::Context& context,
 }
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

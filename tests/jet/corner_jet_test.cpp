@@ -1,7 +1,7 @@
 // Inclusion: whatever a jet says of value, derivatives, corners and interpolation error is true.
 #include <gtest/gtest.h>
 
-#include "core/jet/corner_jet-inl.h"
+#include "core/jet/jet_functions-inl.h"
 #include "tests/jet/jet_check.h"
 
 namespace linetree::test {

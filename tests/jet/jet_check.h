@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/jet/corner_jet-inl.h"
+#include "core/jet/jet_functions-inl.h"
 #include "tests/jet/taylor.h"
 
 namespace linetree::test {
@@ -105,13 +105,13 @@ std::string Complaint(const Jet<D>& jet, const Taylor<D>& truth, const Point<D>&
   std::string complaint;
   if (!inside(truth.f, jet.v.lo, jet.v.hi)) complaint += say("f", truth.f, jet.v.lo, jet.v.hi);
   double lo[D], hi[D];
-  jet.d.lo.Store(lo);
-  jet.d.hi.Store(hi);
+  jet.d().lo.Store(lo);
+  jet.d().hi.Store(hi);
   for (size_t i = 0; i < D; ++i) {
     if (!inside(truth.d[i], lo[i], hi[i])) complaint += say("f'", truth.d[i], lo[i], hi[i]);
   }
-  jet.s.lo.Store(lo);
-  jet.s.hi.Store(hi);
+  jet.s().lo.Store(lo);
+  jet.s().hi.Store(hi);
   for (size_t i = 0; i < D; ++i) {
     if (!inside(truth.s[i], lo[i], hi[i])) complaint += say("f''", truth.s[i], lo[i], hi[i]);
   }

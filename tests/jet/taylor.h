@@ -130,7 +130,7 @@ class RandomPolynomial {
     for (size_t i = 1; i < D; ++i) sum = sum + x[i] * linear_[i];
     for (size_t i = 0; i < D; ++i) {
       for (size_t j = 0; j <= i; ++j) sum = sum + x[i] * x[j] * quadratic_[i][j];
-      if (cubic_[i] != 0) sum = sum + Square(x[i]) * x[i] * cubic_[i];
+      if (cubic_[i] != 0) sum = sum + T(Square(x[i])) * x[i] * cubic_[i];
     }
     return sum;
   }
