@@ -59,21 +59,20 @@ class LightTerms {
   Verdict Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
               const PointCloud& cloud) {
     const Scene& scene = context_.scene;
-    const Vec3d normal{(hit.normal.x.lo() + hit.normal.x.hi()) / 2,
-                       (hit.normal.y.lo() + hit.normal.y.hi()) / 2,
-                       (hit.normal.z.lo() + hit.normal.z.hi()) / 2};
+    const Vec3d normal = hit.MiddleNormal();
     if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
-    const CellLights lights =
-        context_.lights.Certify(object, HullAbout(cloud, Normalized(normal)), nullptr);
+    const PatchHull hull = HullAbout(cloud, Normalized(normal));
     const Material& material = scene.MaterialOf(object);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
       const Light& light = scene.lights[i];
-      if (lights.lights[i].knowledge == LightKnowledge::kOff) continue;
       const Jet facing = Facing(hit, light);
       const double scale = FacingScale(hit, light);
       if (IsNegative(facing, scale)) continue;
+      const LightKnowledge knowledge =
+          context_.lights.KnowledgeOf(object, hull, static_cast<int>(i));
+      if (knowledge == LightKnowledge::kOff) continue;
       Rgb filter{1, 1, 1};
-      if (!IsLit(lights.lights[i], hit, object, light, filter)) return Verdict::kBlocker;
+      if (!IsLit(knowledge, hit, object, light, filter)) return Verdict::kBlocker;
       if (IsBlack(filter)) continue;
       const Rgb arriving = colour * filter * light.irradiance;
       const bool lit = IsPositive(facing, scale);
@@ -87,9 +86,9 @@ class LightTerms {
  private:
   // n.(L - x), or n.l for a directional light.
   Jet Facing(const JetHit<D>& hit, const Light& light) const {
-    if (light.kind == LightKind::kDirectional) return Dot(hit.normal, light.to_light);
+    if (light.kind == LightKind::kDirectional) return hit.NormalDot(light.to_light);
     const JetShape& shape = *hit.shape;
-    if (!hit.curved && shape.corner_normals.empty()) {
+    if (hit.flat) {
       return Jet::Constant(SignedDistance(*shape.PlaneOf(hit.face), light.position) * hit.sign);
     }
     if (shape.radius > 0) {
@@ -106,9 +105,9 @@ class LightTerms {
   }
 
   // Whether the light certainly arrives, as what `filter` leaves of it.
-  bool IsLit(const LightList& list, const JetHit<D>& hit, int object, const Light& light,
+  bool IsLit(LightKnowledge knowledge, const JetHit<D>& hit, int object, const Light& light,
              Rgb& filter) const {
-    if (list.knowledge != LightKnowledge::kOn) return false;
+    if (knowledge != LightKnowledge::kOn) return false;
     if (hit.side == Side::kOutside || hit.shape->IsThin()) return true;
     // From inside the object's own far side is in between, once, unless the light is inside too.
     const Shape& shape = context_.scene.objects[static_cast<size_t>(object)].shape;
@@ -124,16 +123,17 @@ class LightTerms {
 
   bool AddLight(const JetHit<D>& hit, const Vector& direction, const Light& light,
                 const Material& material, const Rgb& arriving, const Jet& facing, bool lit) {
-    Vector to_light;
-    Jet cosine = facing, strength = Jet::Constant(1);
+    // direction.(L - x), of a directional light direction.l.
+    const bool shines = !IsBlack(material.specular);
+    Jet along, cosine = facing, strength = Jet::Constant(1);
     if (light.kind == LightKind::kDirectional) {
-      to_light = Vector::Constant(light.to_light);
+      if (shines) along = Dot(direction, light.to_light);
     } else {
       const Vector segment = -(hit.point - light.position);
       const Jet square = SquaredDistance(hit, light, segment);
       if (!IsPositive(square, square.hi())) return false;
       const Jet inverse = InverseSquareRoot(square);
-      to_light = segment * inverse;
+      if (shines) along = Jet(Dot(direction, segment)) * inverse;
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
@@ -146,9 +146,9 @@ class LightTerms {
     if (!IsBlack(material.diffuse)) {
       sum_.Add(arriving * material.diffuse, faded(lit ? cosine : Positive(cosine)));
     }
-    if (IsBlack(material.specular)) return true;
+    if (!shines) return true;
     Jet highlight;
-    if (!Highlight(hit, direction, to_light, cosine, material.exponent, highlight)) return false;
+    if (!Highlight(hit, -along, cosine, material.exponent, highlight)) return false;
     sum_.Add(arriving * material.specular, faded(highlight));
     return true;
   }
@@ -181,11 +181,11 @@ class LightTerms {
   }
   static constexpr double kUnbounded = 1e30;
 
-  static bool Highlight(const JetHit<D>& hit, const Vector& direction, const Vector& to_light,
-                        const Jet& cosine, double exponent, Jet& highlight) {
-    Jet along = -Dot(direction, to_light);
-    along.AssumeWithin(-1, 1);
-    const Jet denominator = along * 2.0 + 2.0;
+  // `opening` is l.v, the cosine between the light and the way back.
+  static bool Highlight(const JetHit<D>& hit, Jet opening, const Jet& cosine, double exponent,
+                        Jet& highlight) {
+    opening.AssumeWithin(-1, 1);
+    const Jet denominator = opening * 2.0 + 2.0;
     if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
     const Jet half = Square(cosine + hit.cosine);
     Jet square = half * Inverse(denominator);

@@ -92,13 +92,13 @@ class PathWalk {
     ray.between_planes = task_.form.between_planes;
     const JetShape& shape = context_.shapes[static_cast<size_t>(task_.object)];
     const HitEvaluator<4> evaluator(ray);
-    const Jet square = LengthSquared(ray.direction);
-    const Jet inverse_length = InverseSquareRoot(square);
-    direction = ray.direction * inverse_length;
     const bool meets = shape.IsThin()
                            ? evaluator.EvaluateOnPlane(shape, hit)
                            : evaluator.Evaluate(shape, middle.face, middle.side, -1, hit);
     if (!meets) return false;
+    const Jet square = LengthSquared(ray.direction);
+    const Jet inverse_length = InverseSquareRoot(square);
+    direction = ray.direction * inverse_length;
     hit.cosine = hit.cosine * inverse_length;
     hit.cosine.AssumeWithin(0, 1);
     if (!shape.IsThin() && !evaluator.IsContained(hit)) Refuse(Verdict::kGap);
@@ -130,7 +130,7 @@ class PathWalk {
     }
     if (total_reflection || reflects) {
       Leg next = NextLeg(hit, middle, leg, {middle.object, middle.face, middle.side});
-      next.direction = leg.direction + hit.normal * (hit.cosine * 2.0);
+      next.direction = leg.direction + hit.NormalTimes(hit.cosine * 2.0);
       next.middle = Reflected(leg.middle, middle.normal);
       if (!total_reflection) {
         next.weight = leg.weight * MaxChannel(material.reflect);
@@ -204,7 +204,7 @@ class PathWalk {
       if (IsNegative(square, 1)) return Refraction::kTotal;
       if (!IsPositive(square, 1)) return Refraction::kUnknown;
       const Jet across = hit.cosine * eta - SquareRoot(square);
-      refracted = leg.direction * eta + hit.normal * across;
+      refracted = leg.direction * eta + hit.NormalTimes(across);
     }
     if (!direction) return Refraction::kUnknown;
     middle_refracted = *direction;

@@ -70,6 +70,7 @@ struct LooseJet {
 
   double lo() const { return v.lo; }
   double hi() const { return v.hi; }
+  double Middle() const { return (v.lo + v.hi) / 2; }
   // Bounds on the excess of f over Q and of Q over f, without slack: sum U and sum L.
   double ExcessOverQ() const { return Above(SumOfLanes(CurvatureDown(s())) / 8); }
   double ExcessUnderQ() const { return Above(SumOfLanes(CurvatureUp(s())) / 8); }
