@@ -76,7 +76,7 @@ LooseJet<D> Dot(const JetVector<D>& a, const Vec3d& b) {
 }
 template <size_t D>
 LooseJet<D> LengthSquared(const JetVector<D>& a) {
-  return Square(a.x) + Square(a.y) + Square(a.z);
+  return CornerJet<D>(Square(a.x) + Square(a.y)) + Square(a.z);
 }
 template <size_t D>
 LooseVector<D> operator*(const Mat3& m, const JetVector<D>& v) {
