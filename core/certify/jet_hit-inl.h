@@ -53,6 +53,9 @@ struct JetHit {
   int face = 0;
   Side side = Side::kOutside;
   bool curved = false;
+  // Open frustums from inside: some rays may have met the near wall first, instead of coming in
+  // through an open end.
+  bool behind_wall = false;
   double sign = 1;  // of the facing normal against the plane's or the outward one
   JetVector<D> point;
   JetVector<D> object_point;  // curved: in the object frame, on the canonical surface
@@ -108,7 +111,7 @@ class HitEvaluator {
       case JetShape::Kind::kSphere:
         return true;
       case JetShape::Kind::kFrustum:
-        return hit.curved ? IsBetweenCaps(hit) : IsInsideCap(hit);
+        return hit.curved ? !hit.behind_wall && IsBetweenCaps(hit) : IsInsideCap(hit);
       case JetShape::Kind::kPlanes:
         return IsInsidePlanes(shape.planes, hit);
       case JetShape::Kind::kPolygon:
@@ -274,8 +277,21 @@ class HitEvaluator {
                              Square(p.x * q.y - p.y * q.x);
     if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * squares)) return false;
     const Jet root = SquareRoot(discriminant);
+    if (shape.open && !entering) {
+      const Jet before = Jet(-b - root) * Inverse(a);
+      hit.behind_wall = !ComesThroughEnd(line, before, shape);
+    }
     const Jet t = Jet(entering ? -b - root : root - b) * Inverse(a);
     return IsAhead(t, shape) && FinishCurved(root, t, line, hit);
+  }
+
+  // Whether no ray crosses the lateral surface between its ends at `t`, or all do so behind their
+  // origins.
+  bool ComesThroughEnd(const Line& line, const Jet& t, const JetShape& shape) const {
+    if (!ray_.between_planes && IsNegative(t, OriginScale(shape))) return true;
+    const double scale = ObjectScale(shape, line);
+    const Jet z = line.p.z + line.q.z * t;
+    return IsNegative(z, scale) || IsPositive(Jet(z + -1.0), scale);
   }
 
   // `root` is the square root of the discriminant: at a hit the quadratic form's derivative along
