@@ -60,31 +60,38 @@ template <size_t D>
 LooseJet<D> Dot(const JetVector<D>& a, const JetVector<D>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-// Terms with a coefficient of 0 are left out: most normals and frames have some.
+// Terms with a coefficient of 0 are left out, as most normals and frames have some; what is a
+// single term then is as tight as its jet.
 template <size_t D>
-LooseJet<D> Dot(const JetVector<D>& a, const Vec3d& b) {
-  LooseJet<D> sum;
-  bool empty = true;
-  const CornerJet<D>* jets[3] = {&a.x, &a.y, &a.z};
-  for (int i = 0; i < 3; ++i) {
-    if (b[i] == 0) continue;
-    const LooseJet<D> term = *jets[i] * b[i];
-    sum = empty ? term : sum + term;
-    empty = false;
-  }
-  return empty ? CornerJet<D>::Constant(0) : sum;
+CornerJet<D> Dot(const JetVector<D>& a, const Vec3d& b) {
+  const CornerJet<D>* jets[3];
+  double by[3];
+  size_t count = 0;
+  const auto take = [&](const CornerJet<D>& jet, double coefficient) {
+    if (coefficient == 0) return;
+    jets[count] = &jet;
+    by[count++] = coefficient;
+  };
+  take(a.x, b.x);
+  take(a.y, b.y);
+  take(a.z, b.z);
+  if (count == 0) return CornerJet<D>::Constant(0);
+  if (count == 1) return *jets[0] * by[0];
+  LooseJet<D> sum = *jets[0] * by[0] + *jets[1] * by[1];
+  if (count == 3) sum = sum + *jets[2] * by[2];
+  return sum;
 }
 template <size_t D>
 LooseJet<D> LengthSquared(const JetVector<D>& a) {
   return CornerJet<D>(Square(a.x) + Square(a.y)) + Square(a.z);
 }
 template <size_t D>
-LooseVector<D> operator*(const Mat3& m, const JetVector<D>& v) {
+JetVector<D> operator*(const Mat3& m, const JetVector<D>& v) {
   return {Dot(v, m.row[0]), Dot(v, m.row[1]), Dot(v, m.row[2])};
 }
 // Transposed m times v.
 template <size_t D>
-LooseVector<D> MultiplyTransposed(const Mat3& m, const JetVector<D>& v) {
+JetVector<D> MultiplyTransposed(const Mat3& m, const JetVector<D>& v) {
   const auto column = [&](int i) { return Dot(v, Vec3d{m.row[0][i], m.row[1][i], m.row[2][i]}); };
   return {column(0), column(1), column(2)};
 }
