@@ -8,6 +8,8 @@
 #define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
 #endif
 
+#include <vector>
+
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
@@ -63,6 +65,8 @@ class LightTerms {
     if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
     const PatchHull hull = HullAbout(cloud, Normalized(normal));
     const Material& material = scene.MaterialOf(object);
+    // All decisions first: most cells that are refused are refused by one of them.
+    shining_.clear();
     for (size_t i = 0; i < scene.lights.size(); ++i) {
       const Light& light = scene.lights[i];
       const Jet facing = Facing(hit, light);
@@ -74,11 +78,13 @@ class LightTerms {
       Rgb filter{1, 1, 1};
       if (!IsLit(knowledge, hit, object, light, filter)) return Verdict::kBlocker;
       if (IsBlack(filter)) continue;
-      const Rgb arriving = colour * filter * light.irradiance;
-      const bool lit = IsPositive(facing, scale);
+      const bool faces = IsPositive(facing, scale);
       // Where the light sets, the highlight breaks off.
-      if (!lit && !IsBlack(material.specular)) return Verdict::kSelfShadow;
-      if (!AddLight(hit, direction, light, material, arriving, facing, lit)) return Verdict::kPeak;
+      if (!faces && !IsBlack(material.specular)) return Verdict::kSelfShadow;
+      shining_.push_back({&light, colour * filter * light.irradiance, faces});
+    }
+    for (const Shining& s : shining_) {
+      if (!AddLight(hit, direction, *s.light, material, s.arriving, s.faces)) return Verdict::kPeak;
     }
     return Verdict::kCertified;
   }
@@ -122,7 +128,8 @@ class LightTerms {
   }
 
   bool AddLight(const JetHit<D>& hit, const Vector& direction, const Light& light,
-                const Material& material, const Rgb& arriving, const Jet& facing, bool lit) {
+                const Material& material, const Rgb& arriving, bool faces) {
+    const Jet facing = Facing(hit, light);
     // direction.(L - x), of a directional light direction.l.
     const bool shines = !IsBlack(material.specular);
     Jet along, cosine = facing, strength = Jet::Constant(1);
@@ -144,7 +151,7 @@ class LightTerms {
     const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
     const auto faded = [&](const Jet& f) -> Jet { return fades ? Jet(f * strength) : f; };
     if (!IsBlack(material.diffuse)) {
-      sum_.Add(arriving * material.diffuse, faded(lit ? cosine : Positive(cosine)));
+      sum_.Add(arriving * material.diffuse, faded(faces ? cosine : Positive(cosine)));
     }
     if (!shines) return true;
     Jet highlight;
@@ -198,8 +205,16 @@ class LightTerms {
   }
   static constexpr double kLeastDenominator = 0x1p-20;
 
+  // A light that arrives; `faces`: at all hits, not only at some.
+  struct Shining {
+    const Light* light;
+    Rgb arriving;
+    bool faces;
+  };
+
   const PathCertifier::Context& context_;
   RadianceSum<D>& sum_;
+  std::vector<Shining> shining_;  // of one call of Add; kept for its room
 };
 
 }  // namespace linetree::LINETREE_JETS
