@@ -4,13 +4,18 @@
 // meet it inside the face; IsContained says whether they certainly do. Formulas are those in which
 // jets stay narrow (DESIGN, section 5): the discriminant of a quadric as |q|^2 - |p x q|^2, its far
 // side as -2B/A, containment in planar faces as a polynomial instead of at the rational hit point.
+#if defined(LINETREE_CORE_CERTIFY_JET_HIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#undef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
+#endif
+
 #include "core/certify/jet_shape.h"
 #include "core/jet/jet_vector-inl.h"
 #include "core/trace/hit.h"
 
-#ifndef LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
-#define LINETREE_CORE_CERTIFY_JET_HIT_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 // Every decision about a sign keeps away from zero by this share of the lengths involved, and by
@@ -22,7 +27,7 @@ inline constexpr double kSignMargin = 0x1p-34;
 inline constexpr double kDrift = 0x1p-30;
 
 template <size_t D>
-double MarginOf(const CornerJet<D>& f, double scale) {
+double MarginOf(const LooseJet<D>& f, double scale) {
   return kSignMargin * scale + kDrift * f.Variation();
 }
 template <size_t D>
@@ -48,12 +53,34 @@ struct JetHit {
   int face = 0;
   Side side = Side::kOutside;
   bool curved = false;
+  // Open frustums from inside: some rays may have met the near wall first, instead of coming in
+  // through an open end.
+  bool behind_wall = false;
   double sign = 1;  // of the facing normal against the plane's or the outward one
-  CornerJet<D> t;
   JetVector<D> point;
   JetVector<D> object_point;  // curved: in the object frame, on the canonical surface
-  JetVector<D> normal;        // facing, unit
-  CornerJet<D> cosine;        // -direction.normal, for the ray's direction as it is
+  // Facing, unit; one vector for all hits where `flat`.
+  bool flat = false;
+  Vec3d flat_normal;
+  JetVector<D> normal;
+  CornerJet<D> cosine;  // -direction.normal, for the ray's direction as it is
+  // Planes: of the origins from the plane, and how it changes along the rays.
+  CornerJet<D> distance, slope;
+
+  JetVector<D> NormalTimes(const CornerJet<D>& f) const {
+    return flat ? LooseVector<D>(flat_normal * f) : normal * f;
+  }
+  CornerJet<D> NormalDot(const Vec3d& v) const {
+    if (!flat) return Dot(normal, v);
+    CornerJet<D> dot = CornerJet<D>::Constant(Dot(flat_normal, v));
+    dot.slack = 4 * kOutward * Length(v);
+    dot.v = Outward(dot.v.lo - dot.slack, dot.v.hi + dot.slack);
+    return dot;
+  }
+  Vec3d MiddleNormal() const {
+    if (flat) return flat_normal;
+    return {normal.x.Middle(), normal.y.Middle(), normal.z.Middle()};
+  }
 };
 
 template <size_t D>
@@ -84,7 +111,7 @@ class HitEvaluator {
       case JetShape::Kind::kSphere:
         return true;
       case JetShape::Kind::kFrustum:
-        return hit.curved ? IsBetweenCaps(hit) : IsInsideCap(hit);
+        return hit.curved ? !hit.behind_wall && IsBetweenCaps(hit) : IsInsideCap(hit);
       case JetShape::Kind::kPlanes:
         return IsInsidePlanes(shape.planes, hit);
       case JetShape::Kind::kPolygon:
@@ -107,30 +134,30 @@ class HitEvaluator {
     } else {
       return false;
     }
-    hit.t = Jet::Constant(0);
     hit.point = ray_.origin;
     return SetPlaneNormal(n, slope, hit);
   }
 
  private:
   bool EvaluatePlane(const Plane& plane, JetHit<D>& hit) const {
-    const Jet slope = Dot(ray_.direction, plane.normal);
+    const Jet& slope = hit.slope = Dot(ray_.direction, plane.normal);
     const double scale = SlopeScale();
     const bool thin = hit.shape->IsThin();
     const bool against = IsNegative(slope, scale), along = IsPositive(slope, scale);
     if (!against && !along) return false;
     if (!thin && against != (hit.side == Side::kOutside)) return false;
     hit.sign = against ? 1 : -1;
-    const Jet distance = Dot(ray_.origin - plane.point, plane.normal);
-    hit.t = distance * Inverse(slope) * -1.0;
-    if (!IsAhead(hit)) return false;
-    hit.point = ray_.origin + ray_.direction * hit.t;
+    hit.distance = Dot(ray_.origin - plane.point, plane.normal);
+    const Jet t = hit.distance * Inverse(slope) * -1.0;
+    if (!IsAhead(t, *hit.shape)) return false;
+    hit.point = ray_.origin + ray_.direction * t;
     return SetPlaneNormal(plane.normal, slope, hit);
   }
 
   bool SetPlaneNormal(const Vec3d& n, const Jet& slope, JetHit<D>& hit) const {
     if (hit.shape->corner_normals.empty()) {
-      hit.normal = Vector::Constant(n * hit.sign);
+      hit.flat = true;
+      hit.flat_normal = n * hit.sign;
       hit.cosine = slope * -hit.sign;
       return true;
     }
@@ -139,8 +166,7 @@ class HitEvaluator {
       const Plane& opposite = hit.shape->edges[(i + 1) % 3];
       const Jet weight =
           Dot(hit.point - opposite.point, opposite.normal) * (1 / hit.shape->heights[i]);
-      const Vec3d& at = hit.shape->corner_normals[i];
-      sum = sum + Vector{weight * at.x, weight * at.y, weight * at.z};
+      sum = sum + hit.shape->corner_normals[i] * weight;
     }
     const Jet square = LengthSquared(sum);
     if (!(square.lo() > kSignMargin)) return false;
@@ -161,9 +187,8 @@ class HitEvaluator {
                : 1;
   }
   double OriginScale(const JetShape& shape) const { return shape.reach + SizeOf(ray_.origin); }
-  bool IsAhead(JetHit<D>& hit) const {
-    if (ray_.between_planes) return true;
-    return IsPositive(hit.t, OriginScale(*hit.shape));
+  bool IsAhead(const Jet& t, const JetShape& shape) const {
+    return ray_.between_planes || IsPositive(t, OriginScale(shape));
   }
 
   struct Line {
@@ -189,7 +214,7 @@ class HitEvaluator {
     const JetShape& shape = *hit.shape;
     const Line line = ToObject(shape.frame);
     const auto& [p, q] = line;
-    const Jet a = LengthSquared(q);
+    const Jet a = SquareOfDirection(shape, q);
     const Jet b = Dot(p, q);
     const double scale = ObjectScale(shape, line);
     const double slopes = std::sqrt(a.hi());
@@ -197,21 +222,38 @@ class HitEvaluator {
     const bool entering = hit.side == Side::kOutside;
     if (from_itself) {
       if (entering || !IsNegative(b, scale * slopes)) return false;
-      hit.t = b * Inverse(a) * -2.0;
-      return FinishCurved(-b, p + q * hit.t, hit);
+      const Jet t = OverSquare(b, a, shape) * -2.0;
+      return FinishCurved(-b, t, line, hit);
     }
-    Jet discriminant = a - (Square(p.x * q.y - p.y * q.x) + Square(p.y * q.z - p.z * q.y) +
-                            Square(p.z * q.x - p.x * q.z));
+    const Jet x = p.y * q.z - p.z * q.y, y = p.z * q.x - p.x * q.z, z = p.x * q.y - p.y * q.x;
+    Jet discriminant = a - (Square(x) + Square(y) + Square(z));
     // Along each coordinate of a chart between two planes it is a quadratic polynomial whose
     // leading coefficient is the discriminant of a line in the plane of a face of the bounding box,
     // which the sphere does not cross: not positive.
     if (ray_.between_planes) discriminant.AssumeConcave();
     if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * a.hi())) return false;
     const Jet root = SquareRoot(discriminant);
-    hit.t = (entering ? -b - root : root - b) * Inverse(a);
-    if (ray_.between_planes) hit.t.AssumeWithin(0, 1);
-    if (!IsAhead(hit)) return false;
-    return FinishCurved(root, p + q * hit.t, hit);
+    Jet t = OverSquare(entering ? -b - root : root - b, a, shape);
+    if (ray_.between_planes) t.AssumeWithin(0, 1);
+    if (!IsAhead(t, shape)) return false;
+    return FinishCurved(root, t, line, hit);
+  }
+
+  // |q|^2 in the object frame, which for unit directions and spheres is a constant: 1 / radius^2.
+  bool HasConstantSquare(const JetShape& shape) const {
+    return !ray_.between_planes && shape.radius > 0;
+  }
+  Jet SquareOfDirection(const JetShape& shape, const Vector& q) const {
+    if (!HasConstantSquare(shape)) return LengthSquared(q);
+    const double square = 1 / (shape.radius * shape.radius);
+    return AlmostConstant(square, kSimilarity * square);
+  }
+  Jet OverSquare(const Jet& f, const Jet& a, const JetShape& shape) const {
+    if (!HasConstantSquare(shape)) return f * Inverse(a);
+    const double factor = shape.radius * shape.radius;
+    Jet r = f * factor;
+    Widen(r, kSimilarity * r.v.Magnitude());
+    return r;
   }
 
   bool EvaluateLateral(bool from_itself, JetHit<D>& hit) const {
@@ -228,27 +270,36 @@ class HitEvaluator {
     const bool entering = hit.side == Side::kOutside;
     if (from_itself) {
       if (entering || !IsNegative(b, scale * std::sqrt(squares))) return false;
-      hit.t = b * Inverse(a) * -2.0;
-      if (!IsAhead(hit)) return false;
-      return FinishCurved(-b, p + q * hit.t, hit);
+      const Jet t = b * Inverse(a) * -2.0;
+      return IsAhead(t, shape) && FinishCurved(-b, t, line, hit);
     }
     const Jet discriminant = Square(p.x * slope - w * q.x) + Square(p.y * slope - w * q.y) -
                              Square(p.x * q.y - p.y * q.x);
     if (!IsPositive(discriminant, scale * (1 + SizeOf(p)) * squares)) return false;
     const Jet root = SquareRoot(discriminant);
-    hit.t = (entering ? -b - root : root - b) * Inverse(a);
-    if (!IsAhead(hit)) return false;
-    return FinishCurved(root, p + q * hit.t, hit);
+    if (shape.open && !entering) {
+      const Jet before = Jet(-b - root) * Inverse(a);
+      hit.behind_wall = !ComesThroughEnd(line, before, shape);
+    }
+    const Jet t = Jet(entering ? -b - root : root - b) * Inverse(a);
+    return IsAhead(t, shape) && FinishCurved(root, t, line, hit);
+  }
+
+  // Whether no ray crosses the lateral surface between its ends at `t`, or all do so behind their
+  // origins.
+  bool ComesThroughEnd(const Line& line, const Jet& t, const JetShape& shape) const {
+    if (!ray_.between_planes && IsNegative(t, OriginScale(shape))) return true;
+    const double scale = ObjectScale(shape, line);
+    const Jet z = line.p.z + line.q.z * t;
+    return IsNegative(z, scale) || IsPositive(Jet(z + -1.0), scale);
   }
 
   // `root` is the square root of the discriminant: at a hit the quadratic form's derivative along
   // the ray, q.gradient, is -root on entry and +root on exit.
-  bool FinishCurved(const Jet& root, const Vector& on_surface, JetHit<D>& hit) const {
+  bool FinishCurved(const Jet& root, const Jet& t, const Line& line, JetHit<D>& hit) const {
     const JetShape& shape = *hit.shape;
     hit.sign = hit.side == Side::kOutside ? 1 : -1;
-    hit.object_point = on_surface;
-    hit.point = ray_.origin + ray_.direction * hit.t;
-    Vector& m = hit.object_point;
+    Vector& m = hit.object_point = line.p + line.q * t;
     if (shape.kind == JetShape::Kind::kSphere) {
       for (Jet* c : {&m.x, &m.y, &m.z}) c->AssumeWithin(-1, 1);
     }
@@ -260,16 +311,33 @@ class HitEvaluator {
     }
     const Vector outward = MultiplyTransposed(shape.frame.object_from_world, gradient);
     if (shape.radius > 0) {
-      hit.normal = outward * (shape.radius * hit.sign);
+      // The object point turned and scaled: the world point is center + radius * outward normal.
+      const Vector normal = outward * shape.radius;
+      hit.point = normal * shape.radius - -shape.frame.center;
+      for (Jet* c : {&hit.point.x, &hit.point.y, &hit.point.z})
+        Widen(*c, kSimilarity * shape.reach);
+      hit.normal = normal * hit.sign;
       hit.cosine = root * shape.radius;
       return true;
     }
+    hit.point = ray_.origin + ray_.direction * t;
     const Jet square = LengthSquared(outward);
     if (!(square.lo() > 0)) return false;
     const Jet inverse_length = InverseSquareRoot(square);
     hit.normal = outward * inverse_length * hit.sign;
     hit.cosine = root * inverse_length;
     return true;
+  }
+
+  static Jet AlmostConstant(double c, double error) {
+    Jet jet = Jet::Constant(c);
+    Widen(jet, error);
+    return jet;
+  }
+  // f is off by up to `error` from what the jet says so far.
+  static void Widen(Jet& f, double error) {
+    f.slack = Above(f.slack + error);
+    f.v = Outward(f.v.lo - error, f.v.hi + error);
   }
 
   bool IsBetweenCaps(const JetHit<D>& hit) const {
@@ -282,37 +350,53 @@ class HitEvaluator {
     const JetShape& shape = *hit.shape;
     const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
     const double w = hit.face == 1 ? shape.base_radius : shape.base_radius + shape.taper;
-    return IsNegative(Square(p.x) + Square(p.y) + -(w * w),
+    return IsNegative(Jet(Square(p.x) + Square(p.y) + -(w * w)),
                       ObjectScale(shape, ToObject(shape.frame)));
   }
   bool IsInsideDisc(const JetHit<D>& hit) const {
     const JetShape& shape = *hit.shape;
     const Vector p = shape.frame.object_from_world * (hit.point - shape.frame.center);
-    return IsNegative(Square(p.x) + Square(p.y) + -1.0, ObjectScale(shape, ToObject(shape.frame)));
+    return IsNegative(Jet(Square(p.x) + Square(p.y) + -1.0),
+                      ObjectScale(shape, ToObject(shape.frame)));
   }
 
+  bool IsInsidePlanes(const std::vector<Plane>& sides, const JetHit<D>& hit) const {
+    const Plane* own = hit.shape->PlaneOf(hit.face);
+    return std::all_of(sides.begin(), sides.end(), [&](const Plane& side) {
+      return &side == own || IsClearlyInside(side, hit) || IsInsidePlane(side, hit);
+    });
+  }
+  // By the ranges of the hit point alone: cheap, and enough for most sides of most faces.
+  bool IsClearlyInside(const Plane& side, const JetHit<D>& hit) const {
+    const double steepest = hit.slope.v.Magnitude();
+    const double flattest = std::max(hit.slope.lo(), -hit.slope.hi());
+    double margin = kSignMargin * OriginScale(*hit.shape) * steepest / flattest;
+    Interval distance;
+    const Jet* point[3] = {&hit.point.x, &hit.point.y, &hit.point.z};
+    for (int i = 0; i < 3; ++i) {
+      const double n = side.normal[i];
+      distance = distance + (point[i]->v + -side.point[i]) * n;
+      margin += kDrift * std::abs(n) * point[i]->Variation();
+    }
+    return distance.hi < -margin;
+  }
   // With distances f, slopes f' from the hit's plane and e, e' from a side's, the hit's distance
   // from the side is e - e' f / f': of the sign of e |f'| + e' f where f' < 0, else of e |f'| - e'
   // f.
-  bool IsInsidePlanes(const std::vector<Plane>& sides, const JetHit<D>& hit) const {
-    const Plane* own = hit.shape->PlaneOf(hit.face);
-    const Jet slope = Dot(ray_.direction, own->normal);
-    const Jet distance = Dot(ray_.origin - own->point, own->normal);
-    const bool against = slope.hi() < 0;
-    const double scale = OriginScale(*hit.shape) * slope.v.Magnitude();
-    for (const Plane& side : sides) {
-      if (&side == own) continue;
-      const Jet e = Dot(ray_.origin - side.point, side.normal);
-      const Jet rise = Dot(ray_.direction, side.normal);
-      const Jet f = against ? rise * distance - e * slope : e * slope - rise * distance;
-      if (!IsNegative(f, scale)) return false;
-    }
-    return true;
+  bool IsInsidePlane(const Plane& side, const JetHit<D>& hit) const {
+    const bool against = hit.slope.hi() < 0;
+    const double scale = OriginScale(*hit.shape) * hit.slope.v.Magnitude();
+    const Jet e = Dot(ray_.origin - side.point, side.normal);
+    const Jet rise = Dot(ray_.direction, side.normal);
+    const Jet f =
+        against ? rise * hit.distance - e * hit.slope : e * hit.slope - rise * hit.distance;
+    return IsNegative(f, scale);
   }
 
   const JetRay<D>& ray_;
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -6,10 +6,6 @@
 namespace linetree {
 namespace {
 
-// A frame is taken for a similarity when its axes differ by less than this from one length and
-// from right angles; what that leaves of an error is far inside every margin.
-constexpr double kSimilarity = 0x1p-46;
-
 // The radius of a sphere with this frame; 0 for other ellipsoids.
 double RadiusOf(const AffineFrame& frame) {
   const Mat3& m = frame.object_from_world;

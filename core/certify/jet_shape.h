@@ -8,6 +8,10 @@
 
 namespace linetree {
 
+// A frame is taken for a similarity when its axes differ by less than this from one length and
+// from right angles; what that leaves of an error is far inside every margin.
+inline constexpr double kSimilarity = 0x1p-46;
+
 struct JetShape {
   enum class Kind {
     kSphere,   // |p| = 1

@@ -1,15 +1,22 @@
 // What the lights add to the radiance of a bundle's hits, in jets; formulas as in
 // core/trace/shade.h but arranged so that jets stay narrow (DESIGN, section 5): n.(L - x) is
 // constant on a plane and linear on a sphere, (n.h)^2 = (n.l + n.v)^2 / (2 + 2 l.v).
+#if defined(LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#undef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
+#endif
+
+#include <vector>
+
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
 #include "core/certify/ray_bundle.h"
 #include "core/trace/shade.h"
 
-#ifndef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
-#define LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 // An upright box about a cloud, two of its faces across `normal`.
@@ -54,27 +61,30 @@ class LightTerms {
   Verdict Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
               const PointCloud& cloud) {
     const Scene& scene = context_.scene;
-    const Vec3d normal{(hit.normal.x.lo() + hit.normal.x.hi()) / 2,
-                       (hit.normal.y.lo() + hit.normal.y.hi()) / 2,
-                       (hit.normal.z.lo() + hit.normal.z.hi()) / 2};
+    const Vec3d normal = hit.MiddleNormal();
     if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
-    const CellLights lights =
-        context_.lights.Certify(object, HullAbout(cloud, Normalized(normal)), nullptr);
+    const PatchHull hull = HullAbout(cloud, Normalized(normal));
     const Material& material = scene.MaterialOf(object);
+    // All decisions first: most cells that are refused are refused by one of them.
+    shining_.clear();
     for (size_t i = 0; i < scene.lights.size(); ++i) {
       const Light& light = scene.lights[i];
-      if (lights.lights[i].knowledge == LightKnowledge::kOff) continue;
       const Jet facing = Facing(hit, light);
       const double scale = FacingScale(hit, light);
       if (IsNegative(facing, scale)) continue;
+      const LightKnowledge knowledge =
+          context_.lights.KnowledgeOf(object, hull, static_cast<int>(i));
+      if (knowledge == LightKnowledge::kOff) continue;
       Rgb filter{1, 1, 1};
-      if (!IsLit(lights.lights[i], hit, object, light, filter)) return Verdict::kBlocker;
+      if (!IsLit(knowledge, hit, object, light, filter)) return Verdict::kBlocker;
       if (IsBlack(filter)) continue;
-      const Rgb arriving = colour * filter * light.irradiance;
-      const bool lit = IsPositive(facing, scale);
+      const bool faces = IsPositive(facing, scale);
       // Where the light sets, the highlight breaks off.
-      if (!lit && !IsBlack(material.specular)) return Verdict::kSelfShadow;
-      if (!AddLight(hit, direction, light, material, arriving, facing, lit)) return Verdict::kPeak;
+      if (!faces && !IsBlack(material.specular)) return Verdict::kSelfShadow;
+      shining_.push_back({&light, colour * filter * light.irradiance, faces});
+    }
+    for (const Shining& s : shining_) {
+      if (!AddLight(hit, direction, *s.light, material, s.arriving, s.faces)) return Verdict::kPeak;
     }
     return Verdict::kCertified;
   }
@@ -82,9 +92,9 @@ class LightTerms {
  private:
   // n.(L - x), or n.l for a directional light.
   Jet Facing(const JetHit<D>& hit, const Light& light) const {
-    if (light.kind == LightKind::kDirectional) return Dot(hit.normal, light.to_light);
+    if (light.kind == LightKind::kDirectional) return hit.NormalDot(light.to_light);
     const JetShape& shape = *hit.shape;
-    if (!hit.curved && shape.corner_normals.empty()) {
+    if (hit.flat) {
       return Jet::Constant(SignedDistance(*shape.PlaneOf(hit.face), light.position) * hit.sign);
     }
     if (shape.radius > 0) {
@@ -101,9 +111,9 @@ class LightTerms {
   }
 
   // Whether the light certainly arrives, as what `filter` leaves of it.
-  bool IsLit(const LightList& list, const JetHit<D>& hit, int object, const Light& light,
+  bool IsLit(LightKnowledge knowledge, const JetHit<D>& hit, int object, const Light& light,
              Rgb& filter) const {
-    if (list.knowledge != LightKnowledge::kOn) return false;
+    if (knowledge != LightKnowledge::kOn) return false;
     if (hit.side == Side::kOutside || hit.shape->IsThin()) return true;
     // From inside the object's own far side is in between, once, unless the light is inside too.
     const Shape& shape = context_.scene.objects[static_cast<size_t>(object)].shape;
@@ -118,32 +128,34 @@ class LightTerms {
   }
 
   bool AddLight(const JetHit<D>& hit, const Vector& direction, const Light& light,
-                const Material& material, const Rgb& arriving, const Jet& facing, bool lit) {
-    Vector to_light;
-    Jet cosine = facing, strength = Jet::Constant(1);
+                const Material& material, const Rgb& arriving, bool faces) {
+    const Jet facing = Facing(hit, light);
+    // direction.(L - x), of a directional light direction.l.
+    const bool shines = !IsBlack(material.specular);
+    Jet along, cosine = facing, strength = Jet::Constant(1);
     if (light.kind == LightKind::kDirectional) {
-      to_light = Vector::Constant(light.to_light);
+      if (shines) along = Dot(direction, light.to_light);
     } else {
       const Vector segment = -(hit.point - light.position);
       const Jet square = SquaredDistance(hit, light, segment);
       if (!IsPositive(square, square.hi())) return false;
       const Jet inverse = InverseSquareRoot(square);
-      to_light = segment * inverse;
+      if (shines) along = Jet(Dot(direction, segment)) * inverse;
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
-        strength = Inverse(Power(ratio, light.fade_power / 2) + 1.0) * 2.0;
+        strength = Inverse(Jet(Power(ratio, light.fade_power / 2) + 1.0)) * 2.0;
       }
     }
     cosine.AssumeWithin(-1, 1);
     const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
-    const auto faded = [&](const Jet& f) { return fades ? f * strength : f; };
+    const auto faded = [&](const Jet& f) -> Jet { return fades ? Jet(f * strength) : f; };
     if (!IsBlack(material.diffuse)) {
-      sum_.Add(arriving * material.diffuse, faded(lit ? cosine : Positive(cosine)));
+      sum_.Add(arriving * material.diffuse, faded(faces ? cosine : Positive(cosine)));
     }
-    if (IsBlack(material.specular)) return true;
+    if (!shines) return true;
     Jet highlight;
-    if (!Highlight(hit, direction, to_light, cosine, material.exponent, highlight)) return false;
+    if (!Highlight(hit, -along, cosine, material.exponent, highlight)) return false;
     sum_.Add(arriving * material.specular, faded(highlight));
     return true;
   }
@@ -171,18 +183,19 @@ class LightTerms {
     r.k = Max(zero, f.k);
     r.slack = f.slack;
     // Not smooth: no bound on derivatives is claimed, so any range of values makes the error.
-    r.d = r.s = IntervalPack<D>::All({-kUnbounded, kUnbounded});
+    r.ds = IntervalPack<2 * D>::All({-kUnbounded, kUnbounded});
     return r;
   }
   static constexpr double kUnbounded = 1e30;
 
-  static bool Highlight(const JetHit<D>& hit, const Vector& direction, const Vector& to_light,
-                        const Jet& cosine, double exponent, Jet& highlight) {
-    Jet along = -Dot(direction, to_light);
-    along.AssumeWithin(-1, 1);
-    const Jet denominator = along * 2.0 + 2.0;
+  // `opening` is l.v, the cosine between the light and the way back.
+  static bool Highlight(const JetHit<D>& hit, Jet opening, const Jet& cosine, double exponent,
+                        Jet& highlight) {
+    opening.AssumeWithin(-1, 1);
+    const Jet denominator = opening * 2.0 + 2.0;
     if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
-    Jet square = Square(cosine + hit.cosine) * Inverse(denominator);
+    const Jet half = Square(cosine + hit.cosine);
+    Jet square = half * Inverse(denominator);
     square.AssumeWithin(0, 1);
     const double power = exponent / 2;
     const bool smooth = power >= 2 || power == 1 || power == 0;
@@ -192,10 +205,19 @@ class LightTerms {
   }
   static constexpr double kLeastDenominator = 0x1p-20;
 
+  // A light that arrives; `faces`: at all hits, not only at some.
+  struct Shining {
+    const Light* light;
+    Rgb arriving;
+    bool faces;
+  };
+
   const PathCertifier::Context& context_;
   RadianceSum<D>& sum_;
+  std::vector<Shining> shining_;  // of one call of Add; kept for its room
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

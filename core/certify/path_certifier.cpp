@@ -1,7 +1,5 @@
 #include "core/certify/path_certifier.h"
 
-#include "core/certify/path_walk-inl.h"
-
 namespace linetree {
 
 CellBox BoxOf(const CellId& cell) {
@@ -19,7 +17,7 @@ PathCertifier::Context::Context(const Tracer& t)
   for (const Object& object : scene.objects) shapes.push_back(MakeJetShape(object));
 }
 
-PathCertifier::PathCertifier(const Tracer& tracer) : context_(tracer) {}
+PathCertifier::PathCertifier(const Tracer& tracer, Lanes lanes) : context_(tracer), lanes_(lanes) {}
 
 CellPaths PathCertifier::Certify(int object, const ObjectChart& chart, int pair, const CellBox& box,
                                  const PathLimits& limits, const CellPaths* parent) const {
@@ -32,7 +30,8 @@ CellPaths PathCertifier::Certify(int object, const ObjectChart& chart, int pair,
   task.middle = chart.LineOf(pair, middle);
   task.limits = limits;
   task.parent = parent;
-  return scalar_jets::CertifyPaths(context_, task);
+  return lanes_ == Lanes::kSimd ? CertifyPathsSimd(context_, task)
+                                : CertifyPathsScalar(context_, task);
 }
 
 }  // namespace linetree

@@ -37,8 +37,12 @@ inline constexpr size_t kMaxPathSteps = 64;
 
 class PathCertifier {
  public:
+  // How jets are worked on: with the best vectors of this machine, or one number after the other.
+  // Both give the same bits; the second is there to test the first.
+  enum class Lanes { kSimd, kScalar };
+
   // Keeps a reference to the tracer, which must outlive it.
-  explicit PathCertifier(const Tracer& tracer);
+  explicit PathCertifier(const Tracer& tracer, Lanes lanes = Lanes::kSimd);
 
   // What is certain about the rays of the box that meet the object from outside. With `parent`,
   // what is known of a box that contains it, only that one's candidates are looked at.
@@ -69,6 +73,12 @@ class PathCertifier {
 
  private:
   Context context_;
+  Lanes lanes_;
 };
+
+// The two instances of path_walk-inl.h.
+CellPaths CertifyPathsSimd(const PathCertifier::Context& context, const PathCertifier::Task& task);
+CellPaths CertifyPathsScalar(const PathCertifier::Context& context,
+                             const PathCertifier::Task& task);
 
 }  // namespace linetree

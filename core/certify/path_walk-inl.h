@@ -1,4 +1,11 @@
 // Follows the paths of one cell in jets. See path_certifier.h.
+#if defined(LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#undef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
+#endif
+
 #include "core/certify/cell_paths.h"
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/light_terms-inl.h"
@@ -7,9 +14,7 @@
 #include "core/certify/ray_bundle.h"
 #include "core/trace/shade.h"
 
-#ifndef LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
-#define LINETREE_CORE_CERTIFY_PATH_WALK_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 class PathWalk {
@@ -69,14 +74,12 @@ class PathWalk {
 
   static Vector Polynomial(const Vec3d& constant, const std::array<Vec3d, 4>& by,
                            const CellBox& box) {
-    Vector sum = Vector::Constant(constant);
-    for (size_t i = 0; i < 4; ++i) {
-      const Jet x = Jet::Variable(i, box.from[i], box.to[i]);
-      if (by[i].x != 0) sum.x = sum.x + x * by[i].x;
-      if (by[i].y != 0) sum.y = sum.y + x * by[i].y;
-      if (by[i].z != 0) sum.z = sum.z + x * by[i].z;
-    }
-    return sum;
+    const auto along = [&](double Vec3d::*axis) {
+      std::array<double, 4> coefficients;
+      for (size_t i = 0; i < 4; ++i) coefficients[i] = by[i].*axis;
+      return Jet::Affine(constant.*axis, coefficients, box.from, box.to);
+    };
+    return {along(&Vec3d::x), along(&Vec3d::y), along(&Vec3d::z)};
   }
 
   // The cell's rays at the object itself. The face is that of the centre ray; rays that meet others
@@ -88,16 +91,18 @@ class PathWalk {
     ray.between_planes = task_.form.between_planes;
     const JetShape& shape = context_.shapes[static_cast<size_t>(task_.object)];
     const HitEvaluator<4> evaluator(ray);
+    const bool meets = shape.IsThin()
+                           ? evaluator.EvaluateOnPlane(shape, hit)
+                           : evaluator.Evaluate(shape, middle.face, middle.side, -1, hit);
+    if (!meets) return false;
+    // Jets of the square may reach down to zero; no direction is shorter than its part along the
+    // axis.
     Jet square = LengthSquared(ray.direction);
     const double least = task_.form.along_axis * task_.form.along_axis * (1 - 0x1p-40);
     square.AssumeWithin(least, std::max(least, square.hi()));
     if (!(square.lo() > 0)) return false;
     const Jet inverse_length = InverseSquareRoot(square);
     direction = ray.direction * inverse_length;
-    const bool meets = shape.IsThin()
-                           ? evaluator.EvaluateOnPlane(shape, hit)
-                           : evaluator.Evaluate(shape, middle.face, middle.side, -1, hit);
-    if (!meets) return false;
     hit.cosine = hit.cosine * inverse_length;
     hit.cosine.AssumeWithin(0, 1);
     if (!shape.IsThin() && !evaluator.IsContained(hit)) Refuse(Verdict::kGap);
@@ -129,7 +134,7 @@ class PathWalk {
     }
     if (total_reflection || reflects) {
       Leg next = NextLeg(hit, middle, leg, {middle.object, middle.face, middle.side});
-      next.direction = leg.direction + hit.normal * (hit.cosine * 2.0);
+      next.direction = leg.direction + hit.NormalTimes(hit.cosine * 2.0);
       next.middle = Reflected(leg.middle, middle.normal);
       if (!total_reflection) {
         next.weight = leg.weight * MaxChannel(material.reflect);
@@ -206,7 +211,8 @@ class PathWalk {
       if (eta < 1) square.AssumeWithin(1 - eta * eta, 1);
       if (IsNegative(square, 1)) return Refraction::kTotal;
       if (!IsPositive(square, 1)) return Refraction::kUnknown;
-      refracted = leg.direction * eta + hit.normal * (hit.cosine * eta - SquareRoot(square));
+      const Jet across = hit.cosine * eta - SquareRoot(square);
+      refracted = leg.direction * eta + hit.NormalTimes(across);
     }
     if (!direction) return Refraction::kUnknown;
     middle_refracted = *direction;
@@ -286,10 +292,11 @@ class PathWalk {
   }
 
   // Whether a hit is the first crossing of its object by all rays that meet it there. Hits of the
-  // outside are; the far side is met first only by rays that start inside.
+  // outside are, and those of an open frustum's inner side that are contained
+  // (JetHit::behind_wall); the far side of a solid is met first only by rays that start inside.
   static bool IsFirst(const Hit& middle, const Leg& leg, const Shape& shape) {
     if (middle.side == Side::kOutside || middle.object == leg.start.object) return true;
-    return IsSolid(shape) && IsCertainlyInside(CloudOf(leg.origin), shape);
+    return !IsSolid(shape) || IsCertainlyInside(CloudOf(leg.origin), shape);
   }
 
   // Fills in what the rays of a branch can meet. `certain`: nothing but `hit`, or nothing at all,
@@ -303,7 +310,7 @@ class PathWalk {
     } else {
       const double far =
           Length(context_.world.Extent()) + Length(leg.middle_origin - context_.world.Center());
-      end = CloudOf(leg.origin + leg.direction * far);
+      end = CloudOf(Vector(leg.origin + leg.direction * far));
     }
     const PointCloud begin = CloudOf(leg.origin);
     if (!begin.IsFinite() || !end.IsFinite()) {
@@ -360,5 +367,6 @@ inline CellPaths CertifyPaths(const PathCertifier::Context& context,
 }
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -1,12 +1,17 @@
 // The radiance of a cell's rays as a sum of terms: corner values, a lower bound, and a bound on the
 // error of interpolating it.
+#if defined(LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_
+#undef LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_
+#endif
+
 #include "core/jet/corner_jet-inl.h"
 #include "core/math/rgb.h"
 #include "core/tree/interpolant.h"
 
-#ifndef LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_
-#define LINETREE_CORE_CERTIFY_RADIANCE_SUM_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 template <size_t D>
@@ -30,7 +35,7 @@ class RadianceSum {
       if (colour[i] == 0) continue;
       Channel& c = channels_[static_cast<size_t>(i)];
       c.corners = c.corners + f.k * Pack<kCorners>::All(colour[i]);
-      c.curvature = c.curvature + f.s * IntervalPack<D>::All({colour[i], colour[i]});
+      c.curvature = c.curvature + f.s() * colour[i];
       c.least = RoundDown(c.least + RoundDown(colour[i] * std::max(0.0, f.lo())));
       c.most = RoundUp(c.most + RoundUp(colour[i] * std::max(0.0, f.hi())));
       c.error = RoundUp(c.error + RoundUp(colour[i] * error));
@@ -79,5 +84,6 @@ class RadianceSum {
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -21,122 +21,121 @@
 // the latter because the slope of the chord over axis i is a difference of two values of f, each of
 // which interpolation over the other axes misses by at most -U, +L, and because f_i differs from
 // the chord's slope by at most sup|s_i| * integral |u - t| dt <= sup|s_i| / 2.
-// After every operation these replace the ranges where they are narrower (Tighten): the chain rule
-// alone would blow up (dependency), the corners do not.
+// These replace the ranges where they are narrower (Tighten): the chain rule alone would blow up
+// (dependency), the corners do not. It is done once for every sum of products, when it is given a
+// name: sums and products are LooseJets, and turning one into a CornerJet tightens it. Functions
+// and products take CornerJets.
 //
 // Rounding: ranges are rounded outwards; `slack` bounds what the corner values have lost.
-#include "core/jet/pack-inl.h"
-
-#ifndef LINETREE_CORE_JET_CORNER_JET_INL_H_
+#if defined(LINETREE_CORE_JET_CORNER_JET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_JET_CORNER_JET_INL_H_
+#undef LINETREE_CORE_JET_CORNER_JET_INL_H_
+#else
 #define LINETREE_CORE_JET_CORNER_JET_INL_H_
+#endif
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "core/jet/interval.h"
+#include "core/jet/interval_pack-inl.h"
+
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
-
-using linetree::Inverse;
-using linetree::Meet;
-using linetree::Outward;
-using linetree::Power;
-using linetree::Square;
-using linetree::SquareRoot;
-
-// Intervals in lanes.
-template <size_t N>
-struct IntervalPack {
-  Pack<N> lo, hi;
-
-  static IntervalPack All(const Interval& a) { return {Pack<N>::All(a.lo), Pack<N>::All(a.hi)}; }
-};
-template <size_t N>
-Pack<N> StepOf(const Pack<N>& a) {
-  return Abs(a) * Pack<N>::All(kOutward) + Pack<N>::All(std::numeric_limits<double>::denorm_min());
-}
-template <size_t N>
-IntervalPack<N> Outward(const Pack<N>& lo, const Pack<N>& hi) {
-  return {lo - StepOf(lo), hi + StepOf(hi)};
-}
-template <size_t N>
-IntervalPack<N> operator-(const IntervalPack<N>& a) {
-  return {-a.hi, -a.lo};
-}
-template <size_t N>
-IntervalPack<N> operator+(const IntervalPack<N>& a, const IntervalPack<N>& b) {
-  return Outward(a.lo + b.lo, a.hi + b.hi);
-}
-template <size_t N>
-IntervalPack<N> operator*(const IntervalPack<N>& a, const IntervalPack<N>& b) {
-  const Pack<N> p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
-  return Outward(Min(Min(p, q), Min(r, s)), Max(Max(p, q), Max(r, s)));
-}
-template <size_t N>
-IntervalPack<N> Square(const IntervalPack<N>& a) {
-  const Pack<N> zero = Pack<N>::All(0);
-  const Pack<N> p = a.lo * a.lo, q = a.hi * a.hi;
-  // inf |a| is 0 where a contains 0.
-  const Pack<N> nearest = Max(zero, Max(a.lo, -a.hi));
-  const Pack<N> least = nearest * nearest, most = Max(p, q);
-  return {Max(zero, least - StepOf(least)), most + StepOf(most)};
-}
-template <size_t N>
-IntervalPack<N> Meet(const IntervalPack<N>& a, const IntervalPack<N>& b) {
-  const Pack<N> lo = Max(a.lo, b.lo), hi = Min(a.hi, b.hi);
-  return {Min(lo, hi), Max(lo, hi)};
-}
-template <size_t N>
-Pack<N> Magnitudes(const IntervalPack<N>& a) {
-  return Max(-a.lo, a.hi);
-}
-template <size_t N>
-double SumOfLanes(const Pack<N>& a) {
-  double lanes[N];
-  a.Store(lanes);
-  double sum = 0;
-  for (size_t i = 0; i < N; ++i) sum += lanes[i];
-  return sum;
-}
 
 // A sum or product of at most sixteen rounded terms, none negative, as an upper bound.
 inline double Above(double x) { return x * (1 + 16 * kOutward); }
 
-template <size_t D>
-struct CornerJet {
+// What one more rounded operation costs the corner values of a result in `range`.
+inline double RoundingOf(const Interval& range, double slack) {
+  return (range.Magnitude() + slack) * kOutward + std::numeric_limits<double>::denorm_min();
+}
+
+template <size_t Dimension>
+struct LooseJet {
+  static constexpr size_t D = Dimension;
   static constexpr size_t kCorners = size_t{1} << D;
+  using Corners = Pack<kCorners>;
 
   Interval v;
-  IntervalPack<D> d, s;
-  Pack<kCorners> k;
+  IntervalPack<2 * D> ds;  // d, then s
+  Corners k;
   double slack = 0;
+
+  IntervalPack<D> d() const { return LowerHalf(ds); }
+  IntervalPack<D> s() const { return UpperHalf(ds); }
+
+  double lo() const { return v.lo; }
+  double hi() const { return v.hi; }
+  double Middle() const { return (v.lo + v.hi) / 2; }
+  // Bounds on the excess of f over Q and of Q over f, without slack: sum U and sum L.
+  double ExcessOverQ() const { return Above(SumOfLanes(CurvatureDown(s())) / 8); }
+  double ExcessUnderQ() const { return Above(SumOfLanes(CurvatureUp(s())) / 8); }
+  // |Q - f|, Q made of the corner values held here.
+  double InterpolationError() const {
+    return RoundUp(Above(SumOfLanes(Magnitudes(s())) / 8) + slack);
+  }
+  // Sum of sup |df/du_i|: how far f can be from one end of the cell to the other.
+  double Variation() const { return Above(SumOfLanes(Magnitudes(d()))); }
+
+ protected:
+  static Pack<D> CurvatureDown(const IntervalPack<D>& s) { return Max(Pack<D>::All(0), -s.lo); }
+  static Pack<D> CurvatureUp(const IntervalPack<D>& s) { return Max(Pack<D>::All(0), s.hi); }
+};
+
+template <size_t Dimension>
+struct CornerJet : LooseJet<Dimension> {
+  using Loose = LooseJet<Dimension>;
+  using Loose::D, Loose::kCorners, Loose::v, Loose::ds, Loose::k, Loose::slack;
+  using typename Loose::Corners;
+
+  CornerJet() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): that is how sums are tightened.
+  CornerJet(const Loose& loose) : Loose(loose) { Tighten(); }
 
   static CornerJet Constant(double c) {
     CornerJet jet;
     jet.v = {c, c};
-    jet.d = jet.s = IntervalPack<D>::All({0, 0});
-    jet.k = Pack<kCorners>::All(c);
+    jet.ds = IntervalPack<2 * D>::All({0, 0});
+    jet.k = Corners::All(c);
+    return jet;
+  }
+  // constant + sum by[i] x_i, where x_i runs from from[i] to to[i] along axis i.
+  static CornerJet Affine(double constant, const std::array<double, D>& by,
+                          const std::array<double, D>& from, const std::array<double, D>& to) {
+    double corners[kCorners], lo[2 * D] = {}, hi[2 * D] = {};
+    double size = std::abs(constant);
+    corners[0] = constant;
+    for (size_t i = 0; i < D; ++i) corners[0] += by[i] * from[i];
+    for (size_t i = 0; i < D; ++i) {
+      const size_t count = size_t{1} << i;
+      const double step = by[i] * (to[i] - from[i]);
+      for (size_t m = 0; m < count; ++m) corners[m + count] = corners[m] + step;
+      const Interval slope = Outward(to[i] - from[i], to[i] - from[i]) * by[i];
+      lo[i] = slope.lo;
+      hi[i] = slope.hi;
+      size += std::abs(by[i]) * (std::abs(from[i]) + std::abs(to[i]));
+    }
+    CornerJet jet;
+    jet.k = Corners::Load(corners);
+    jet.ds = {Pack<2 * D>::Load(lo), Pack<2 * D>::Load(hi)};
+    // A corner is the sum of 2 D + 1 terms, each of them two or three operations.
+    constexpr double kOperations = 2 * D + 3;
+    jet.slack = Above(kOperations * (size * kOutward + std::numeric_limits<double>::denorm_min()));
+    jet.v = Outward(SmallestLane(jet.k) - jet.slack, LargestLane(jet.k) + jet.slack);
     return jet;
   }
   // The coordinate that runs from `from` to `to` along one axis.
   static CornerJet Variable(size_t axis, double from, double to) {
-    CornerJet jet = Constant(from);
-    jet.v = {std::min(from, to), std::max(from, to)};
-    double corners[kCorners], lo[D] = {}, hi[D] = {};
-    for (size_t m = 0; m < kCorners; ++m) corners[m] = (m >> axis & 1) != 0 ? to : from;
-    lo[axis] = RoundDown(to - from);
-    hi[axis] = RoundUp(to - from);
-    jet.k = Pack<kCorners>::Load(corners);
-    jet.d = {Pack<D>::Load(lo), Pack<D>::Load(hi)};
-    return jet;
+    std::array<double, D> by{}, begin{}, end{};
+    by[axis] = 1;
+    begin[axis] = from;
+    end[axis] = to;
+    return Affine(0, by, begin, end);
   }
-
-  double lo() const { return v.lo; }
-  double hi() const { return v.hi; }
-  // Bounds on the excess of f over Q and of Q over f, without slack: sum U and sum L.
-  double ExcessOverQ() const { return Above(SumOfLanes(CurvatureDown()) / 8); }
-  double ExcessUnderQ() const { return Above(SumOfLanes(CurvatureUp()) / 8); }
-  // |Q - f|, Q made of the corner values held here.
-  double InterpolationError() const {
-    return RoundUp(Above(SumOfLanes(Magnitudes(s)) / 8) + slack);
-  }
-  // Sum of sup |df/du_i|: how far f can be from one end of the cell to the other.
-  double Variation() const { return Above(SumOfLanes(Magnitudes(d))); }
 
   // Something else is known of f's range.
   void AssumeWithin(double least, double most) {
@@ -144,189 +143,95 @@ struct CornerJet {
   }
   // f is known to be concave along every axis.
   void AssumeConcave() {
-    const Pack<D> zero = Pack<D>::All(0);
-    s.hi = Min(s.hi, zero);
+    IntervalPack<D> s = this->s();
+    s.hi = Min(s.hi, Pack<D>::All(0));
     s.lo = Min(s.lo, s.hi);
+    ds = Combine(this->d(), s);
     Tighten();
   }
 
+ private:
   void Tighten() {
-    const Pack<D> up = CurvatureDown(), down = CurvatureUp();
-    const double eighth = 0.125;
-    const double sum_up = Above(SumOfLanes(up) * eighth);
-    const double sum_down = Above(SumOfLanes(down) * eighth);
+    const IntervalPack<D> s = this->s();
+    const Pack<D> up = this->CurvatureDown(s), down = this->CurvatureUp(s);
+    const double sum_up = Above(SumOfLanes(up) * 0.125);
+    const double sum_down = Above(SumOfLanes(down) * 0.125);
     const double least = SmallestLane(k), most = LargestLane(k);
     v = Meet(v, Outward(RoundDown(least - sum_down) - slack, RoundUp(most + sum_up) + slack));
-    TightenSlopes(up, down, sum_up + sum_down);
-  }
-
- private:
-  Pack<D> CurvatureDown() const { return Max(Pack<D>::All(0), -s.lo); }
-  Pack<D> CurvatureUp() const { return Max(Pack<D>::All(0), s.hi); }
-
-  void TightenSlopes(const Pack<D>& up, const Pack<D>& down, double total) {
-    double least[D], most[D];
-    SlopeRange<0>(least, most);
     // sum_{j != i} (U_j + L_j) + |s_i|/2 + what the slopes themselves have lost.
+    const double total = sum_up + sum_down;
     const Pack<D> others = Pack<D>::All(Above(total)) - (up + down) * Pack<D>::All(0.125);
     const double lost = 2 * slack + 8 * kOutward * (v.Magnitude() + slack);
     const Pack<D> wide = Max(Pack<D>::All(0), others) + Max(up, down) * Pack<D>::All(0.5) +
                          Pack<D>::All(Above(lost + total * 4 * kOutward));
-    d = Meet(d, Outward(Pack<D>::Load(least) - wide, Pack<D>::Load(most) + wide));
-  }
-  template <size_t Axis>
-  void SlopeRange(double* least, double* most) const {
-    if constexpr (Axis < D) {
-      const Pack<kCorners> slopes = Slopes<Axis>(k);
-      least[Axis] = SmallestLane(slopes);
-      most[Axis] = LargestLane(slopes);
-      SlopeRange<Axis + 1>(least, most);
-    }
+    const LaneSlopes<D> slopes = SlopesOf<D>(k);
+    ds = Combine(Meet(this->d(), Outward(slopes.least - wide, slopes.most + wide)), s);
   }
 };
 
-// What one more rounded operation costs the corner values of a result in `range`.
-inline double RoundingOf(const Interval& range, double slack) {
-  return (range.Magnitude() + slack) * kOutward + std::numeric_limits<double>::denorm_min();
-}
+// Negated, scaled or moved, a jet is as tight as it was.
+template <class J>
+concept AnyJet = std::derived_from<J, LooseJet<J::D>>;
 
-template <size_t D>
-CornerJet<D> operator-(const CornerJet<D>& a) {
-  CornerJet<D> r;
+template <AnyJet J>
+J operator-(const J& a) {
+  J r;
   r.v = -a.v;
-  r.d = -a.d;
-  r.s = -a.s;
+  r.ds = -a.ds;
   r.k = -a.k;
   r.slack = a.slack;
   return r;
 }
-template <size_t D>
-CornerJet<D> operator+(const CornerJet<D>& a, const CornerJet<D>& b) {
-  CornerJet<D> r;
-  r.v = a.v + b.v;
-  r.d = a.d + b.d;
-  r.s = a.s + b.s;
-  r.k = a.k + b.k;
-  r.slack = Above(a.slack + b.slack);
-  r.slack = Above(r.slack + RoundingOf(r.v, r.slack));
-  r.Tighten();
-  return r;
-}
-template <size_t D>
-CornerJet<D> operator-(const CornerJet<D>& a, const CornerJet<D>& b) {
-  return a + -b;
-}
-template <size_t D>
-CornerJet<D> operator+(const CornerJet<D>& a, double c) {
-  CornerJet<D> r = a;
+template <AnyJet J>
+J operator+(const J& a, double c) {
+  J r = a;
   r.v = a.v + c;
-  r.k = a.k + Pack<CornerJet<D>::kCorners>::All(c);
+  r.k = a.k + J::Corners::All(c);
   r.slack = Above(a.slack + RoundingOf(r.v, a.slack));
   return r;
 }
-template <size_t D>
-CornerJet<D> operator*(const CornerJet<D>& a, double c) {
-  const Interval factor{c, c};
-  const IntervalPack<D> factors = IntervalPack<D>::All(factor);
-  CornerJet<D> r;
-  r.v = a.v * factor;
-  r.d = a.d * factors;
-  r.s = a.s * factors;
-  r.k = a.k * Pack<CornerJet<D>::kCorners>::All(c);
+template <AnyJet J>
+J operator*(const J& a, double c) {
+  J r;
+  r.v = a.v * c;
+  r.ds = a.ds * c;
+  r.k = a.k * J::Corners::All(c);
   r.slack = Above(a.slack * std::abs(c));
   r.slack = Above(r.slack + RoundingOf(r.v, r.slack));
   return r;
 }
+
+template <size_t D>
+LooseJet<D> operator+(const LooseJet<D>& a, const LooseJet<D>& b) {
+  LooseJet<D> r;
+  r.v = a.v + b.v;
+  r.ds = a.ds + b.ds;
+  r.k = a.k + b.k;
+  r.slack = Above(a.slack + b.slack);
+  r.slack = Above(r.slack + RoundingOf(r.v, r.slack));
+  return r;
+}
+template <size_t D>
+LooseJet<D> operator-(const LooseJet<D>& a, const LooseJet<D>& b) {
+  return a + -b;
+}
 // (ab)'' = a b'' + b a'' + 2 a' b'.
 template <size_t D>
-CornerJet<D> operator*(const CornerJet<D>& a, const CornerJet<D>& b) {
-  const IntervalPack<D> va = IntervalPack<D>::All(a.v), vb = IntervalPack<D>::All(b.v);
-  const IntervalPack<D> both = a.d * b.d;
-  CornerJet<D> r;
+LooseJet<D> operator*(const CornerJet<D>& a, const CornerJet<D>& b) {
+  using Terms = IntervalPack<2 * D>;
+  LooseJet<D> r;
   r.v = a.v * b.v;
-  r.d = va * b.d + vb * a.d;
-  r.s = va * b.s + vb * a.s + (both + both);
+  const IntervalPack<D> both = NearProduct(a.d(), b.d());
+  const IntervalPack<D> twice = {both.lo + both.lo, both.hi + both.hi};
+  r.ds = SumOfNear(NearProduct(Terms::All(a.v), b.ds), NearProduct(Terms::All(b.v), a.ds),
+                   Combine(IntervalPack<D>::All({0, 0}), twice));
   r.k = a.k * b.k;
   r.slack = Above(a.v.Magnitude() * b.slack + b.v.Magnitude() * a.slack + a.slack * b.slack);
   r.slack = Above(r.slack + RoundingOf(r.v, r.slack));
-  r.Tighten();
   return r;
-}
-
-// Corner values moved into the range, where f's own are: never farther from f than before.
-template <size_t D>
-Pack<CornerJet<D>::kCorners> CornersWithin(const CornerJet<D>& a) {
-  using Corners = Pack<CornerJet<D>::kCorners>;
-  return Max(Min(a.k, Corners::All(a.v.hi)), Corners::All(a.v.lo));
-}
-
-// A function of one variable over an interval: its range and those of its derivatives.
-struct Function {
-  Interval value, first, second;
-};
-// g(a), given g's ranges over a.v and its values at the corners, each to within `rounding` of them
-// relative.
-template <size_t D>
-CornerJet<D> Compose(const CornerJet<D>& a, const Function& g,
-                     const Pack<CornerJet<D>::kCorners>& corners, double rounding) {
-  const IntervalPack<D> first = IntervalPack<D>::All(g.first);
-  CornerJet<D> r;
-  r.v = g.value;
-  r.d = first * a.d;
-  r.s = IntervalPack<D>::All(g.second) * Square(a.d) + first * a.s;
-  r.k = corners;
-  r.slack = Above(g.first.Magnitude() * a.slack);
-  r.slack = Above(r.slack + (g.value.Magnitude() + r.slack) * rounding +
-                  std::numeric_limits<double>::denorm_min());
-  r.Tighten();
-  return r;
-}
-
-template <size_t D>
-CornerJet<D> Square(const CornerJet<D>& a) {
-  const auto k = CornersWithin(a);
-  return Compose(a, Function{Square(a.v), a.v * 2.0, {2, 2}}, k * k, 2 * kOutward);
-}
-// 1 / a; the range keeps off 0.
-template <size_t D>
-CornerJet<D> Inverse(const CornerJet<D>& a) {
-  const auto k = CornersWithin(a);
-  const Interval value = Inverse(a.v);
-  const Interval square = Square(value);
-  const Function g{value, -square, square * value * 2.0};
-  return Compose(a, g, Pack<CornerJet<D>::kCorners>::All(1) / k, 2 * kOutward);
-}
-// lo > 0.
-template <size_t D>
-CornerJet<D> SquareRoot(const CornerJet<D>& a) {
-  const Interval value = SquareRoot(a.v);
-  const Interval inverse = Inverse(value);
-  const Function g{value, inverse * 0.5, -(inverse * Square(inverse) * 0.25)};
-  return Compose(a, g, SquareRoot(CornersWithin(a)), 2 * kOutward);
-}
-// 1 / sqrt(a); lo > 0.
-template <size_t D>
-CornerJet<D> InverseSquareRoot(const CornerJet<D>& a) {
-  using Corners = Pack<CornerJet<D>::kCorners>;
-  const Interval value = Inverse(SquareRoot(a.v));
-  const Interval square = Square(value);
-  const Interval cube = value * square;
-  const Function g{value, -(cube * 0.5), cube * square * 0.75};
-  return Compose(a, g, Corners::All(1) / SquareRoot(CornersWithin(a)), 4 * kOutward);
-}
-// a^p; lo >= 0, and lo > 0 unless p >= 2 or p is 0 or 1: what the first two derivatives need.
-template <size_t D>
-CornerJet<D> Power(const CornerJet<D>& a, double p) {
-  if (p == 0) return CornerJet<D>::Constant(1);
-  if (p == 1) return a;
-  double corners[CornerJet<D>::kCorners];
-  CornersWithin(a).Store(corners);
-  for (double& x : corners) x = std::pow(x, p);
-  const Interval curvature = p == 2 ? Interval{1, 1} : Power(a.v, p - 2);
-  const Function g{Power(a.v, p), Power(a.v, p - 1) * p, curvature * p * (p - 1)};
-  return Compose(a, g, Pack<CornerJet<D>::kCorners>::Load(corners), kPowerRounding);
 }
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -111,6 +111,23 @@ bool LightCertifier::HidesAll(const Bundle& bundle, int object) const {
   });
 }
 
+LightKnowledge LightCertifier::Decide(const Bundle& bundle, const std::vector<int32_t>& kept,
+                                      int32_t& occluder) const {
+  if (kept.empty()) return LightKnowledge::kOn;
+  const auto hides = [&](int32_t candidate) { return HidesAll(bundle, candidate); };
+  if (const auto it = std::find_if(kept.begin(), kept.end(), hides); it != kept.end()) {
+    occluder = *it;
+    return LightKnowledge::kOff;
+  }
+  return kept.size() <= kMaxCandidates ? LightKnowledge::kListed : LightKnowledge::kUnknown;
+}
+
+LightKnowledge LightCertifier::KnowledgeOf(int object, const PatchHull& hull, int light) const {
+  const Bundle bundle(object, light, hull, scene_.lights[static_cast<size_t>(light)], world_);
+  int32_t occluder = kNoObject;
+  return Decide(bundle, Candidates(bundle, LightList()), occluder);
+}
+
 CellLights LightCertifier::Certify(int object, const PatchHull& hull,
                                    const CellLights* parent) const {
   CellLights cell;
@@ -129,16 +146,8 @@ CellLights LightCertifier::Certify(int object, const PatchHull& hull,
     }
     const Bundle bundle(object, static_cast<int>(i), hull, scene_.lights[i], world_);
     const std::vector<int32_t> kept = Candidates(bundle, inherited);
-    if (kept.empty()) {
-      list.knowledge = LightKnowledge::kOn;
-      continue;
-    }
-    const auto hides = [&](int32_t candidate) { return HidesAll(bundle, candidate); };
-    if (const auto it = std::find_if(kept.begin(), kept.end(), hides); it != kept.end()) {
-      list.knowledge = LightKnowledge::kOff;
-      list.occluder = *it;
-    } else if (kept.size() <= kMaxCandidates) {
-      list.knowledge = LightKnowledge::kListed;
+    list.knowledge = Decide(bundle, kept, list.occluder);
+    if (list.knowledge == LightKnowledge::kListed) {
       cell.objects.insert(cell.objects.end(), kept.begin(), kept.end());
     }
   }

@@ -52,9 +52,15 @@ class LightCertifier {
   // that contains it, only that one's candidates are looked at.
   CellLights Certify(int object, const PatchHull& hull, const CellLights* parent) const;
 
+  // The same for one light without a parent, and without the candidates.
+  LightKnowledge KnowledgeOf(int object, const PatchHull& hull, int light) const;
+
  private:
   struct Bundle;
 
+  // What may block, as Candidates gives it, decides.
+  LightKnowledge Decide(const Bundle& bundle, const std::vector<int32_t>& kept,
+                        int32_t& occluder) const;
   std::vector<int32_t> Candidates(const Bundle& bundle, const LightList& inherited) const;
   bool MayBlock(const Bundle& bundle, int object) const;
   // Whether the object hides the light from every point of the hull.

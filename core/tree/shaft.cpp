@@ -46,7 +46,9 @@ Shaft::Shaft(const Box3& from, const Box3& to) : hull_bounds_(from) {
         // Tangent to both boxes iff the like corner is the supporting one.
         const bool supports =
             ((corner & 1) != 0) == (normal[i] > 0) && ((corner & 2) != 0) == (normal[j] > 0);
-        if (supports) sides_.push_back({normal, std::max(Sup(from, normal), Sup(to, normal))});
+        if (!supports) continue;
+        sides_[side_count_++] = {normal, std::max(Sup(from, normal), Sup(to, normal)),
+                                 Magnitude(hull_bounds_, normal)};
       }
     }
   }
@@ -54,9 +56,9 @@ Shaft::Shaft(const Box3& from, const Box3& to) : hull_bounds_(from) {
 
 bool Shaft::Misses(const Box3& box) const {
   if (!hull_bounds_.Overlaps(box)) return true;
-  return std::any_of(sides_.begin(), sides_.end(), [&](const HalfSpace& side) {
-    const double slack =
-        kShaftRounding * (Magnitude(box, side.normal) + Magnitude(hull_bounds_, side.normal));
+  const auto end = sides_.begin() + static_cast<std::ptrdiff_t>(side_count_);
+  return std::any_of(sides_.begin(), end, [&](const HalfSpace& side) {
+    const double slack = kShaftRounding * (Magnitude(box, side.normal) + side.magnitude);
     return Inf(box, side.normal) > side.offset + slack;
   });
 }

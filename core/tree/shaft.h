@@ -2,7 +2,8 @@
 // culling, as the paper's section 5.2 uses it).
 #pragma once
 
-#include <vector>
+#include <array>
+#include <cstddef>
 
 #include "core/math/box3.h"
 
@@ -23,9 +24,12 @@ class Shaft {
   struct HalfSpace {
     Vec3d normal;
     double offset;
+    double magnitude;  // of the hull along the normal, for rounding
   };
   Box3 hull_bounds_;
-  std::vector<HalfSpace> sides_;
+  // One for each pair of axes and each like corner, at most.
+  std::array<HalfSpace, 12> sides_;
+  size_t side_count_ = 0;
 };
 
 }  // namespace linetree
