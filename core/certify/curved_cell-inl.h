@@ -1,5 +1,12 @@
 // A cell of a sphere or a frustum's lateral surface as jets of its two chart coordinates, and the
 // diffuse light of one light on it. The charts are those of core/tree/surface_chart.h.
+#if defined(LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_
+#undef LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_
+#else
+#define LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_
+#endif
+
 #include <numbers>
 
 #include "core/certify/jet_shape.h"
@@ -8,9 +15,7 @@
 #include "core/scene/light.h"
 #include "core/tree/surface_chart.h"
 
-#ifndef LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_
-#define LINETREE_CORE_CERTIFY_CURVED_CELL_INL_H_
-
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 class CurvedCell {
@@ -49,7 +54,7 @@ class CurvedCell {
       const Vector segment = -(point_ - light.position);
       const Jet square = LengthSquared(segment);
       if (!(square.lo() > kLeastShare * square.hi())) return term;
-      facing = Dot(normal_, segment) * InverseSquareRoot(square);
+      facing = Jet(Dot(normal_, segment)) * Jet(InverseSquareRoot(square));
     }
     facing.AssumeWithin(-1, 1);
     double corners[4];
@@ -74,7 +79,7 @@ class CurvedCell {
 
   void SetSphere(int patch, const Jet& u, const Jet& v) {
     const Jet a = Tangent(AngleOf(u)), b = Tangent(AngleOf(v));
-    const Jet inverse_length = InverseSquareRoot(Square(a) + Square(b) + 1.0);
+    const Jet inverse_length = InverseSquareRoot(Jet(Square(a) + Square(b) + 1.0));
     const int k = patch / 2;
     Jet* on_sphere[3] = {&object_point_.x, &object_point_.y, &object_point_.z};
     *on_sphere[k] = patch % 2 == 0 ? inverse_length : -inverse_length;
@@ -122,5 +127,6 @@ class CurvedCell {
 };
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -1,9 +1,14 @@
 // Sines and tangents of corner jets, for angles of a quarter turn, where they are monotone.
-#include "core/jet/corner_jet-inl.h"
-
-#ifndef LINETREE_CORE_JET_ANGLE_FUNCTIONS_INL_H_
+#if defined(LINETREE_CORE_JET_ANGLE_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_JET_ANGLE_FUNCTIONS_INL_H_
+#undef LINETREE_CORE_JET_ANGLE_FUNCTIONS_INL_H_
+#else
 #define LINETREE_CORE_JET_ANGLE_FUNCTIONS_INL_H_
+#endif
 
+#include "core/jet/jet_functions-inl.h"
+
+LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
 // sin, cos and tan of the C library are within a unit in the last place; this is eight.
@@ -43,5 +48,6 @@ CornerJet<D> Tangent(const CornerJet<D>& a) {
 }
 
 }  // namespace linetree::LINETREE_JETS
+LINETREE_AFTER_JETS();
 
 #endif

@@ -70,7 +70,7 @@ class OneCell : public PathLists {
 };
 class NoLights : public LightLists {
  public:
-  const LightList* Find(const Hit&) const override { return nullptr; }
+  KnownLights Find(const Hit&) const override { return {}; }
 };
 
 }  // namespace linetree::test
