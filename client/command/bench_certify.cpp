@@ -176,7 +176,8 @@ void AddBenchCertify(CLI::App& bench, Commands& commands) {
       ->delimiter(',')
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app->add_option("--footprint", flags->min_footprint, "Surface cells of fewer pixels are not divided")
+  app->add_option("--footprint", flags->min_footprint,
+                  "Surface cells of fewer pixels are not divided")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   app->add_option("--threads", flags->threads, "0: all hardware threads")->capture_default_str();

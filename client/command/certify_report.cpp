@@ -29,20 +29,23 @@ uint64_t CertifyReport::Violations() const {
 }
 
 std::string CellTable(const CertifyReport& report) {
-  std::vector<TableColumn> columns = {
-      {"edge", Align::kRight}, {"cells", Align::kRight}, {"same paths", Align::kRight}};
+  std::vector<TableColumn> columns = {{"edge", Align::kRight},
+                                      {"cells", Align::kRight},
+                                      {"same paths", Align::kRight},
+                                      {"partly", Align::kRight}};
   for (const double epsilon : report.cell_options.epsilons) {
     columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
     columns.push_back({"paper's", Align::kRight});
   }
   for (const char* title : {"rays", "violations", "error/bound", "replay differs", "cell/16 shades",
-                            "refused/accepted"}) {
+                            "partly/accepted", "refused/accepted"}) {
     columns.push_back({title, Align::kRight});
   }
   Table table(columns);
   for (const CellStudyRow& row : report.cells) {
     std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge), Grouped(row.cells),
-                                     Percent(Share(row.same_paths, row.cells))};
+                                     Percent(Share(row.same_paths, row.cells)),
+                                     Percent(Share(row.partly, row.cells))};
     for (size_t i = 0; i < row.certified.size(); ++i) {
       line.push_back(Percent(Share(row.certified[i], row.cells)));
       line.push_back(Percent(Share(row.paper[i], row.cells)));
@@ -52,6 +55,7 @@ std::string CellTable(const CertifyReport& report) {
     line.push_back(absl::StrFormat("%.3f", row.largest_error));
     line.push_back(Grouped(row.replay_differences));
     line.push_back(Ratio(row.accepted_us / std::max(1e-9, row.shades_us)));
+    line.push_back(Ratio(row.partly_us / std::max(1e-9, row.accepted_us)));
     line.push_back(Ratio(row.refused_us / std::max(1e-9, row.accepted_us)));
     table.AddRow(line);
   }
@@ -107,6 +111,7 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
     json["cells"].push_back({{"edge", row.edge},
                              {"cells", row.cells},
                              {"same_paths", row.same_paths},
+                             {"partly", row.partly},
                              {"epsilons", report.cell_options.epsilons},
                              {"certified", row.certified},
                              {"paper", row.paper},
@@ -115,6 +120,7 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"largest_error_over_bound", row.largest_error},
                              {"replay_differences", row.replay_differences},
                              {"accepted_us", row.accepted_us},
+                             {"partly_us", row.partly_us},
                              {"refused_us", row.refused_us},
                              {"shades_us", row.shades_us}});
   }

@@ -87,8 +87,8 @@ class LoadTest {
         stop_ = true;
         return;
       }
-      sample.interpolated = answer->stats.interpolated;
-      sample.traced = answer->stats.traced;
+      sample.hits = answer->stats.interpolated + answer->stats.replayed;
+      sample.misses = answer->stats.traced - answer->stats.replayed;
       samples_.push_back(sample);
       ShowProgress(sample.end_s);
     }

@@ -8,15 +8,15 @@
 namespace linetree {
 namespace {
 
-double Share(uint64_t interpolated, uint64_t traced) {
-  const uint64_t hits = interpolated + traced;
-  return hits == 0 ? 0 : static_cast<double>(interpolated) / static_cast<double>(hits);
+double Share(uint64_t hits, uint64_t misses) {
+  const uint64_t all = hits + misses;
+  return all == 0 ? 0 : static_cast<double>(hits) / static_cast<double>(all);
 }
 
 std::vector<LoadBucket> Buckets(const std::vector<LoadSample>& samples, double seconds) {
   std::vector<LoadBucket> buckets(kLoadBuckets);
-  std::vector<uint64_t> interpolated(kLoadBuckets);
-  std::vector<uint64_t> traced(kLoadBuckets);
+  std::vector<uint64_t> hits(kLoadBuckets);
+  std::vector<uint64_t> misses(kLoadBuckets);
   const double length = seconds / kLoadBuckets;
   for (size_t i = 0; i < kLoadBuckets; ++i) {
     buckets[i].from_s = static_cast<double>(i) * length;
@@ -26,11 +26,11 @@ std::vector<LoadBucket> Buckets(const std::vector<LoadSample>& samples, double s
     const double place = length > 0 ? sample.end_s / length : 0;
     const size_t i = std::min(static_cast<size_t>(place), size_t{kLoadBuckets - 1});
     ++buckets[i].frames;
-    interpolated[i] += sample.interpolated;
-    traced[i] += sample.traced;
+    hits[i] += sample.hits;
+    misses[i] += sample.misses;
   }
   for (size_t i = 0; i < kLoadBuckets; ++i) {
-    buckets[i].hit_rate = Share(interpolated[i], traced[i]);
+    buckets[i].hit_rate = Share(hits[i], misses[i]);
   }
   return buckets;
 }
@@ -49,13 +49,13 @@ LoadFigures SummarizeLoad(const std::vector<LoadSample>& samples) {
   LoadFigures figures;
   if (samples.empty()) return figures;
   std::vector<double> latencies_ms;
-  uint64_t interpolated = 0;
-  uint64_t traced = 0;
+  uint64_t hits = 0;
+  uint64_t misses = 0;
   for (const LoadSample& sample : samples) {
     latencies_ms.push_back(1000 * (sample.end_s - sample.start_s));
     figures.seconds = std::max(figures.seconds, sample.end_s);
-    interpolated += sample.interpolated;
-    traced += sample.traced;
+    hits += sample.hits;
+    misses += sample.misses;
   }
   figures.frames = samples.size();
   if (figures.seconds > 0) {
@@ -65,7 +65,7 @@ LoadFigures SummarizeLoad(const std::vector<LoadSample>& samples) {
   figures.p90_ms = NearestRank(latencies_ms, 0.9);
   figures.p99_ms = NearestRank(latencies_ms, 0.99);
   figures.max_ms = NearestRank(latencies_ms, 1);
-  figures.hit_rate = Share(interpolated, traced);
+  figures.hit_rate = Share(hits, misses);
   figures.buckets = Buckets(samples, figures.seconds);
   return figures;
 }
@@ -101,7 +101,7 @@ std::vector<Plot> LoadPlots(const LoadFigures& figures, const std::string& title
                              static_cast<double>(bucket.frames) / (bucket.to_s - bucket.from_s));
   }
   const PlotAxis time{.label = "seconds", .min = 0, .max = figures.seconds};
-  const PlotAxis percent{.label = "pixels interpolated, %", .min = 0, .max = 100};
+  const PlotAxis percent{.label = "pixels that hit, %", .min = 0, .max = 100};
   return {{title + ": hit rate over time", time, percent, {std::move(hit_rate)}},
           {title + ": throughput", time, {.label = "frames per second"}, {std::move(rate)}}};
 }

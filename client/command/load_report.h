@@ -13,9 +13,9 @@ namespace linetree {
 // One frame that a client asked for. Times are seconds since the test began.
 struct LoadSample {
   double start_s = 0;
-  double end_s = 0;  // when the whole frame had arrived
-  uint64_t interpolated = 0;
-  uint64_t traced = 0;
+  double end_s = 0;   // when the whole frame had arrived
+  uint64_t hits = 0;  // pixels that needed no search of the scene but for the eye ray's hit
+  uint64_t misses = 0;
 };
 
 // Frames that ended in [from_s, to_s); the last bucket includes its end.

@@ -110,8 +110,10 @@ class SceneStudy {
         certifier_.Certify(cell.object, chart, cell.pair, cell.box, limits_, nullptr);
     const double took = NowUs() - begin;
     const bool same = paths.verdict == Verdict::kCertified;
-    (same ? row.accepted_us : row.refused_us) += took;
+    const bool partly = !same && paths.ListsAnything();
+    (same ? row.accepted_us : partly ? row.partly_us : row.refused_us) += took;
     row.same_paths += same ? 1 : 0;
+    row.partly += partly ? 1 : 0;
     const double before_shades = NowUs();
     const Corners corners = Shade(cell);
     if (same) row.shades_us += NowUs() - before_shades;
@@ -180,6 +182,7 @@ class SceneStudy {
 void Add(const CellStudyRow& from, CellStudyRow& to) {
   to.cells += from.cells;
   to.same_paths += from.same_paths;
+  to.partly += from.partly;
   for (size_t i = 0; i < from.certified.size(); ++i) {
     to.certified[i] += from.certified[i];
     to.paper[i] += from.paper[i];
@@ -189,6 +192,7 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
   to.replay_differences += from.replay_differences;
   to.largest_error = std::max(to.largest_error, from.largest_error);
   to.accepted_us += from.accepted_us;
+  to.partly_us += from.partly_us;
   to.refused_us += from.refused_us;
   to.shades_us += from.shades_us;
 }
@@ -208,7 +212,9 @@ std::vector<CellStudyRow> StudyCells(const CellStudyOptions& options, WorkerPool
     const double accepted = std::max<double>(1, static_cast<double>(row.same_paths));
     row.accepted_us /= accepted;
     row.shades_us /= accepted;
-    row.refused_us /= std::max<double>(1, static_cast<double>(row.cells - row.same_paths));
+    row.partly_us /= std::max<double>(1, static_cast<double>(row.partly));
+    row.refused_us /=
+        std::max<double>(1, static_cast<double>(row.cells - row.same_paths - row.partly));
     rows.push_back(row);
     progress(static_cast<double>(e + 1) / static_cast<double>(options.edges.size()));
   }

@@ -72,6 +72,10 @@ bool PathCache::Reader::ForEachKnown(const Hit& hit, const Vec3d& direction, Pat
 }
 
 const PathStep* PathCache::Reader::Find(const Hit& hit, const Vec3d& direction) const {
+  if (seen_object_ == hit.object && seen_point_ == hit.point && seen_direction_ == direction) {
+    if (seen_sample_ && samples_ != nullptr) samples_->push_back(*seen_sample_);
+    return seen_steps_;
+  }
   PathCoords at;
   const PathStep* steps = nullptr;
   const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
@@ -86,13 +90,21 @@ Verdict PathCache::Reader::Interpolate(const Hit& hit, const Vec3d& direction, d
   PathCoords at;
   Verdict verdict = Verdict::kUntried;
   const PathNode* best = nullptr;
-  ForEachKnown(hit, direction, at, [&](const PathNode& node) {
+  seen_object_ = hit.object;
+  seen_point_ = hit.point;
+  seen_direction_ = direction;
+  seen_steps_ = nullptr;
+  seen_sample_.reset();
+  const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
     const CellPaths& paths = *node.payload;
+    const bool ends = paths.steps[0].EndsAt(hit);
+    if (ends) seen_steps_ = paths.steps.data();
     verdict = paths.verdict;
     if (verdict != Verdict::kCertified) return;
     verdict = paths.spread <= epsilon ? Verdict::kGap : Verdict::kEpsilon;
-    if (paths.spread <= epsilon && paths.steps[0].EndsAt(hit)) best = &node;
+    if (paths.spread <= epsilon && ends) best = &node;
   });
+  if (placed) seen_sample_ = Sample{hit.object, at};
   if (best == nullptr) return verdict;
   radiance = Evaluate(*best->payload->interpolant, LocalCoords(best->cell, at.coords));
   return Verdict::kCertified;

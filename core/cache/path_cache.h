@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <span>
 #include <vector>
@@ -50,8 +51,8 @@ class PathCache {
 
     const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
 
-    // Radiance along a ray with this hit, if its cell may answer at epsilon: then kCertified, else
-    // why not.
+    // Radiance along a ray with this hit, if its
+    // cell may answer at epsilon: then kCertified, else why not.
     Verdict Interpolate(const Hit& hit, const Vec3d& direction, double epsilon,
                         Rgb& radiance) const;
 
@@ -66,6 +67,11 @@ class PathCache {
     std::shared_lock<std::shared_mutex> lock_;
     const TreeStore<PathTree>* store_ = nullptr;  // null: no trees for these limits yet
     uint32_t now_ = 0;
+    // What Interpolate saw on its way, for the Find that follows it.
+    mutable int32_t seen_object_ = kNoObject;
+    mutable Vec3d seen_point_, seen_direction_;
+    mutable std::optional<Sample> seen_sample_;
+    mutable const PathStep* seen_steps_ = nullptr;
   };
 
   // Certifies and divides the cells of the samples where that pays; `weight` is the number of rays

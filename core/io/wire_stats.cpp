@@ -34,6 +34,9 @@ v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height) 
   message.set_listed_shadow_rays(all.listed);
   message.set_ip_listed_shadow_rays(stats.ip.listed);
   message.set_listed_branch_rays(all.listed_branches);
+  message.set_ip_listed_branch_rays(stats.ip.listed_branches);
+  message.set_summed_surfaces(all.summed);
+  message.set_ip_summed_surfaces(stats.ip.summed);
   message.set_intersect(all.intersect);
   message.set_shade(all.shade);
   message.set_base_intersect(stats.base.intersect);
@@ -68,6 +71,8 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
               .refracted = message.ip_refracted_rays(),
               .shadow = message.ip_shadow_rays(),
               .listed = message.ip_listed_shadow_rays(),
+              .listed_branches = message.ip_listed_branch_rays(),
+              .summed = message.ip_summed_surfaces(),
               .intersect = message.ip_intersect(),
               .shade = message.ip_shade()};
   stats.base = {.eye = message.eye_rays() - stats.ip.eye,
@@ -75,7 +80,8 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
                 .refracted = message.refracted_rays() - stats.ip.refracted,
                 .shadow = message.shadow_rays() - stats.ip.shadow,
                 .listed = message.listed_shadow_rays() - stats.ip.listed,
-                .listed_branches = message.listed_branch_rays(),
+                .listed_branches = message.listed_branch_rays() - stats.ip.listed_branches,
+                .summed = message.summed_surfaces() - stats.ip.summed,
                 .intersect = message.base_intersect(),
                 .shade = message.base_shade()};
   for (size_t v = 0; v < kVerdictCount; ++v) {
@@ -100,8 +106,8 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   stats.set_ray_batches(totals.ray_batches);
   *stats.mutable_totals() = FrameStatsToWire(totals.stats, 0, 0);
   stats.set_cache_bytes(host.CacheBytes());
-  stats.set_cells(host.cache().CellCount() + host.surfaces().CellCount() +
-                  host.paths().CellCount());
+  stats.set_cells(host.cache().CellCount() + host.paths().CellCount());
+  stats.set_surface_cells(host.surfaces().CellCount());
   std::vector<Counts> cells = host.cache().CellVerdicts();
   const std::vector<Counts> certified = host.paths().CellVerdicts();
   for (size_t object = 0; object < cells.size(); ++object) {

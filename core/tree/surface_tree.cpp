@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/trace/intersect.h"
+
 namespace linetree {
 
-SurfaceTree::SurfaceTree(const Object& object) : chart_(object), cells_(chart_.patches()) {}
+SurfaceTree::SurfaceTree(const Object& object)
+    : object_(object), chart_(object), cells_(chart_.patches()) {}
 
 KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) const {
   KnownLights known;
@@ -22,13 +25,22 @@ KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) cons
 void SurfaceTree::AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
                              double epsilon, KnownLights& known) const {
   const auto& sums = node.payload->sums;
-  if ((!sums[0] && !sums[1]) || hit.side != Side::kOutside) return;
-  const size_t side = chart_.IsOtherSide(hit.normal) ? 1 : 0;
-  if (!sums[side] || !(sums[side]->spread <= epsilon)) return;
+  if (!sums[0] && !sums[1]) return;
+  const auto side = SideOf(hit);
+  if (!side || !sums[*side] || !(sums[*side]->spread <= epsilon)) return;
   const double scale = std::ldexp(1.0, node.cell.depth);
   known.has_diffuse = true;
-  known.diffuse = sums[side]->At(std::clamp(point.u * scale - node.cell.i, 0.0, 1.0),
-                                 std::clamp(point.v * scale - node.cell.j, 0.0, 1.0));
+  known.diffuse = sums[*side]->At(std::clamp(point.u * scale - node.cell.i, 0.0, 1.0),
+                                  std::clamp(point.v * scale - node.cell.j, 0.0, 1.0));
+}
+
+std::optional<size_t> SurfaceTree::SideOf(const Hit& hit) const {
+  if (IsPlanar(object_.shape)) return chart_.IsOtherSide(hit.normal) ? 1 : 0;
+  if (hit.side != Side::kOutside) return std::nullopt;
+  const Vec3d outward = std::visit(
+      [&](const auto& s) { return OutwardNormal(s, hit.face, hit.point); }, object_.shape);
+  if (!(Dot(outward, hit.normal) > 0)) return std::nullopt;
+  return 0;
 }
 
 uint64_t SurfaceTree::CountBytes() const {

@@ -2,6 +2,8 @@
 // is certain about the lights (DESIGN: two kinds of tree). Thread safety as in cell_tree.h.
 #pragma once
 
+#include <optional>
+
 #include "core/trace/light_lists.h"
 #include "core/tree/cell_tree.h"
 #include "core/tree/light_certifier.h"
@@ -21,6 +23,7 @@ class SurfaceTree {
  public:
   using Node = SurfaceNode;
 
+  // Keeps a reference to the object.
   explicit SurfaceTree(const Object& object);
 
   const SurfaceChart& chart() const { return chart_; }
@@ -35,6 +38,11 @@ class SurfaceTree {
   void AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
                   double epsilon, KnownLights& known) const;
 
+  // Which of the sums holds at a hit; nothing for inner sides, and where a grazing ray's normal has
+  // been turned inwards by rounding.
+  std::optional<size_t> SideOf(const Hit& hit) const;
+
+  const Object& object_;
   SurfaceChart chart_;
   CellTree<SurfaceTraits> cells_;
 };

@@ -46,6 +46,7 @@ Frame Render(const std::string& name, const std::string& camera, Mode mode) {
   request.camera = *scene->FindCamera(camera);
   request.width = request.height = kSide;
   request.options.mode = mode;
+  request.options.judge = JudgeKind::kPaper;
   request.options.max_relative_error = 0.25;
   auto frame = host.RenderFrame(request, pool);
   EXPECT_TRUE(frame.ok()) << frame.status();
@@ -59,6 +60,7 @@ std::vector<uint64_t> CellsTried(SceneHost& host, const std::vector<Camera>& cam
     FrameRequest request;
     request.camera = camera;
     request.width = request.height = kSide / 2;
+    request.options.judge = JudgeKind::kPaper;
     request.options.max_relative_error = 0.25;
     const auto frame = host.RenderFrame(request, pool);
     EXPECT_TRUE(frame.ok()) << frame.status();

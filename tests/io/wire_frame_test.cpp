@@ -121,7 +121,7 @@ const Damage kDamages[] = {
      [](Chunks& c) { c[0].mutable_tile()->mutable_radiance()->RemoveLast(); }},
     {"too_many_objects", [](Chunks& c) { c[0].mutable_tile()->add_object(1); }},
     {"no_sources", [](Chunks& c) { c[0].mutable_tile()->clear_source(); }},
-    {"unknown_source", [](Chunks& c) { (*c[0].mutable_tile()->mutable_source())[5] = 3; }},
+    {"unknown_source", [](Chunks& c) { (*c[0].mutable_tile()->mutable_source())[5] = 5; }},
     {"unknown_verdict", [](Chunks& c) { (*c[0].mutable_tile()->mutable_verdict())[5] = '\xff'; }},
 };
 INSTANTIATE_TEST_SUITE_P(All, WireFrameDamage, testing::ValuesIn(kDamages),

@@ -18,14 +18,15 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 FrameStats CountedStats() {
   FrameStats stats;
   uint64_t next = 1;
-  for (uint64_t* field :
-       {&stats.pixels, &stats.interpolated, &stats.traced, &stats.background, &stats.cells_tried,
-        &stats.cells_accepted, &stats.cells_evicted, &stats.cache_bytes}) {
+  for (uint64_t* field : {&stats.pixels, &stats.interpolated, &stats.traced, &stats.replayed,
+                          &stats.residual, &stats.background, &stats.cells_tried,
+                          &stats.cells_accepted, &stats.cells_evicted, &stats.cache_bytes}) {
     *field = next++;
   }
   for (RayCounts* counts : {&stats.base, &stats.ip}) {
-    *counts = {next, next + 1, next + 2, next + 3, next + 4, next + 5};
-    next += 6;
+    *counts = {next,     next + 1, next + 2, next + 3, next + 4,
+               next + 5, next + 6, next + 7, next + 8};
+    next += 9;
   }
   for (uint64_t& verdict : stats.verdicts) verdict = next++;
   stats.wall_ms = 0.5;
@@ -37,6 +38,8 @@ void ExpectSame(const FrameStats& a, const FrameStats& b) {
   EXPECT_EQ(a.pixels, b.pixels);
   EXPECT_EQ(a.interpolated, b.interpolated);
   EXPECT_EQ(a.traced, b.traced);
+  EXPECT_EQ(a.replayed, b.replayed);
+  EXPECT_EQ(a.residual, b.residual);
   EXPECT_EQ(a.background, b.background);
   EXPECT_EQ(a.base, b.base);
   EXPECT_EQ(a.ip, b.ip);

@@ -54,7 +54,10 @@ TEST(RenderCommand, WritesPicturesAndCountersThatAgree) {
     return std::count(frame->source.begin(), frame->source.end(), source);
   };
   EXPECT_EQ(json["interpolated"], count(Source::kInterpolated));
-  EXPECT_EQ(json["traced"], count(Source::kTraced));
+  EXPECT_EQ(json["replayed"], count(Source::kReplayed));
+  EXPECT_EQ(json["residual"], count(Source::kResidual));
+  EXPECT_EQ(json["traced"],
+            count(Source::kTraced) + count(Source::kReplayed) + count(Source::kResidual));
   EXPECT_EQ(json["background"], count(Source::kBackground));
   for (size_t v = 0; v < kVerdictCount; ++v) {
     EXPECT_EQ(json["verdicts"][std::string(kVerdictNames[v])],
