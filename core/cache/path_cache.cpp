@@ -166,14 +166,28 @@ std::vector<PathCache::Group> PathCache::GroupByLeaf(Forest& forest,
   return groups;
 }
 
+std::vector<PathCache::Group*> PathCache::ChooseNew(std::vector<Group>& groups, size_t allowance) {
+  std::vector<Group*> chosen;
+  for (Group& group : groups) {
+    if (!group.node->payload && group.node->uses >= kMinPathUses) chosen.push_back(&group);
+  }
+  // Groups come in the order of their cells, so that ties don't depend on memory either.
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const Group* a, const Group* b) { return a->node->uses > b->node->uses; });
+  chosen.resize(std::min(chosen.size(), allowance));
+  return chosen;
+}
+
 std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Group> groups,
-                                                  double weight, const ParallelLoop& loop) {
+                                                  double weight, const ParallelLoop& loop,
+                                                  size_t& allowance) {
   for (const Group& group : groups) {
     group.node->uses += static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
   }
-  loop(groups.size(), [&](size_t i) {
-    Group& group = groups[i];
-    if (group.node->payload || group.node->uses < kMinPathUses) return;
+  const std::vector<Group*> chosen = ChooseNew(groups, allowance);
+  allowance -= chosen.size();
+  loop(chosen.size(), [&](size_t i) {
+    Group& group = *chosen[i];
     const ObjectChart& chart = forest.store.Get(static_cast<size_t>(group.object))->chart();
     group.paths = std::make_unique<const CellPaths>(
         certifier_.Certify(group.object, chart, group.node->root, BoxOf(group.node->cell),
@@ -184,9 +198,8 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
   const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
-    if (node.uses < kMinPathUses) continue;
-    if (!node.payload && !forest.store.Publish(node, std::move(group.paths), budget)) continue;
-    if (node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
+    if (group.paths) forest.store.Publish(node, std::move(group.paths), budget);
+    if (!node.payload || node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
     // Where dividing has not helped so far, more rays must ask for it.
     if (node.uses < uint64_t{kMinPathDivision} << std::min(group.barren_levels, 8)) continue;
     if (!forest.store.Divide(node, clock_, budget)) continue;
@@ -210,8 +223,10 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
     forest->store.PlantWanted(BudgetOf(*forest));
     groups = GroupByLeaf(*forest, samples);
   }
+  const double rays = static_cast<double>(samples.size()) * weight;
+  size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
   while (!groups.empty()) {
-    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop);
+    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop, allowance);
     groups = GroupByLeaf(*forest, next);
   }
   const uint64_t certified = CellCount() - before;

@@ -27,6 +27,11 @@ inline constexpr uint32_t kMinPathUses = 64;
 // And divided when this many have: of one eye's rays a few children get most.
 inline constexpr uint32_t kMinPathDivision = 4 * kMinPathUses;
 
+// A cell costs about as much as tracing fifty rays: one for so many rays keeps the price of
+// learning below a twentieth of a frame. The cells that most rays ask for come first.
+inline constexpr double kRaysPerNewCell = 512;
+inline constexpr size_t kMinNewCells = 64;  // small batches may have so many all the same
+
 // Path limits for which there are trees at the same time.
 inline constexpr size_t kMaxPathForests = 8;
 
@@ -95,9 +100,11 @@ class PathCache {
   Forest& OpenForest(const PathLimits& limits);
   void LookAround(Forest& forest, Group& group, const PathCoords& at) const;
   std::vector<Group> GroupByLeaf(Forest& forest, std::span<const Sample> samples) const;
-  // Certifies the groups' cells and divides them; the samples that go on come back.
+  // Of the groups' cells, certifies those that pay and most ask for, `allowance` at most (which it
+  // takes them from), and divides them; the samples that go on come back.
   std::vector<Sample> Descend(Forest& forest, std::vector<Group> groups, double weight,
-                              const ParallelLoop& loop);
+                              const ParallelLoop& loop, size_t& allowance);
+  static std::vector<Group*> ChooseNew(std::vector<Group>& groups, size_t allowance);
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.
   uint64_t BudgetOf(const Forest& forest) const;
