@@ -73,7 +73,7 @@ bool PathCache::Reader::ForEachKnown(const Hit& hit, const Vec3d& direction, Pat
 
 const PathStep* PathCache::Reader::Find(const Hit& hit, const Vec3d& direction) const {
   if (seen_object_ == hit.object && seen_point_ == hit.point && seen_direction_ == direction) {
-    if (seen_sample_ && samples_ != nullptr) samples_->push_back(*seen_sample_);
+    if (seen_sample_) Take(*seen_sample_);
     return seen_steps_;
   }
   PathCoords at;
@@ -81,7 +81,7 @@ const PathStep* PathCache::Reader::Find(const Hit& hit, const Vec3d& direction) 
   const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
     if (node.payload->steps[0].EndsAt(hit)) steps = node.payload->steps.data();
   });
-  if (placed && samples_ != nullptr) samples_->push_back({hit.object, at});
+  if (placed) Take({hit.object, at});
   return steps;
 }
 
@@ -180,7 +180,7 @@ std::vector<PathCache::Group*> PathCache::ChooseNew(std::vector<Group>& groups, 
 
 std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Group> groups,
                                                   double weight, const ParallelLoop& loop,
-                                                  size_t& allowance) {
+                                                  size_t& allowance, uint64_t& certified) {
   for (const Group& group : groups) {
     group.node->uses += static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
   }
@@ -198,7 +198,7 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
   const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
-    if (group.paths) forest.store.Publish(node, std::move(group.paths), budget);
+    if (group.paths && forest.store.Publish(node, std::move(group.paths), budget)) ++certified;
     if (!node.payload || node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
     // Where dividing has not helped so far, more rays must ask for it.
     if (node.uses < uint64_t{kMinPathDivision} << std::min(group.barren_levels, 8)) continue;
@@ -211,7 +211,7 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
                            const ParallelLoop& loop) {
   std::lock_guard refining(refine_mutex_);
-  const uint64_t before = CellCount();
+  uint64_t certified = 0;
   Forest* forest = nullptr;
   std::vector<Group> groups;
   {
@@ -226,10 +226,9 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
   const double rays = static_cast<double>(samples.size()) * weight;
   size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
   while (!groups.empty()) {
-    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop, allowance);
+    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop, allowance, certified);
     groups = GroupByLeaf(*forest, next);
   }
-  const uint64_t certified = CellCount() - before;
   Evict();
   return certified;
 }

@@ -30,6 +30,8 @@ inline constexpr uint32_t kMinPathDivision = 4 * kMinPathUses;
 // A cell costs about as much as tracing fifty rays: one for so many rays keeps the price of
 // learning below a twentieth of a frame. The cells that most rays ask for come first.
 inline constexpr double kRaysPerNewCell = 512;
+// Samples that one reader takes; what more rays would add is not worth the memory.
+inline constexpr size_t kMaxSamples = 4096;
 inline constexpr size_t kMinNewCells = 64;  // small batches may have so many all the same
 
 // Path limits for which there are trees at the same time.
@@ -51,7 +53,8 @@ class PathCache {
   // Holds the lock: keep it short, a part of a frame.
   class Reader : public PathLists {
    public:
-    // With `samples`, every ray that is looked up is added to them; they must outlive the reader.
+    // With `samples`, rays that are looked up are added to them, up to kMaxSamples; they must
+    // outlive the reader.
     Reader(const PathCache& cache, const PathLimits& limits, std::vector<Sample>* samples);
 
     const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
@@ -64,6 +67,9 @@ class PathCache {
    private:
     // visit(const PathNode&) for the cells around a ray of which something is known, the largest
     // first; false when the ray has no place in any tree.
+    void Take(const Sample& sample) const {
+      if (samples_ != nullptr && samples_->size() < kMaxSamples) samples_->push_back(sample);
+    }
     template <class Fn>
     bool ForEachKnown(const Hit& hit, const Vec3d& direction, PathCoords& at, Fn&& visit) const;
 
@@ -103,7 +109,7 @@ class PathCache {
   // Of the groups' cells, certifies those that pay and most ask for, `allowance` at most (which it
   // takes them from), and divides them; the samples that go on come back.
   std::vector<Sample> Descend(Forest& forest, std::vector<Group> groups, double weight,
-                              const ParallelLoop& loop, size_t& allowance);
+                              const ParallelLoop& loop, size_t& allowance, uint64_t& certified);
   static std::vector<Group*> ChooseNew(std::vector<Group>& groups, size_t allowance);
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.

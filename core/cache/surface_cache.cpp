@@ -64,7 +64,10 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
   std::unique_lock lock(mutex_);
   for (Work& work : works) {
     SurfaceNode& node = *work.node;
-    if (!node.payload && !store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
+    if (!node.payload) {
+      if (!work.lights) continue;  // the loop was cut short
+      if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
+    }
     const bool divide = work.points >= min_uses_ && node.cell.depth < kMaxSurfaceDepth &&
                         !node.payload->IsDecided();
     if (!divide || !store_.Divide(node, clock_, memory_bytes_)) continue;

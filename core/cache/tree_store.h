@@ -66,12 +66,15 @@ class TreeStore {
     return true;
   }
 
-  // Takes back blocks of leaves, those used longest ago first, while the store holds more than
-  // `target` bytes.
+  // Takes back blocks of leaves, those used longest ago first, and when there are none left whole
+  // trees, while the store holds more than `target` bytes.
   void Evict(uint64_t target) {
     while (byte_size_ > target) {
       std::vector<std::pair<uint32_t, Node*>> victims = ParentsOfLeaves();
-      if (victims.empty()) return;
+      if (victims.empty()) {
+        DropTrees(target);
+        return;
+      }
       std::stable_sort(victims.begin(), victims.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
       for (const auto& [used, node] : victims) {
@@ -118,6 +121,25 @@ class TreeStore {
       });
     });
     return parents;
+  }
+  // Of trees without children, those used longest ago first.
+  void DropTrees(uint64_t target) {
+    std::vector<std::pair<uint32_t, size_t>> order;
+    ForEachTree([&](size_t object, Tree& tree) {
+      uint32_t used = 0;
+      tree.cells().ForEach([&](Node& node) {
+        used = std::max(used, node.last_used.load(std::memory_order_relaxed));
+      });
+      order.emplace_back(used, object);
+    });
+    std::sort(order.begin(), order.end());
+    for (const auto& [used, object] : order) {
+      if (byte_size_ <= target) return;
+      Tree& tree = *trees_[object];
+      byte_size_ -= tree.CountBytes();
+      tree.cells().ForEach([&](Node& node) { cells_ -= node.payload ? 1 : 0; });
+      trees_[object].reset();
+    }
   }
   void DropChildren(Node& node, uint32_t used) {
     for (const Node& child : *node.children) {

@@ -13,7 +13,10 @@ namespace {
 // Nodes are floats, at most 1.64^2 of whose largest rounding reaches the sum; twice that, and what
 // the arithmetic in double adds.
 constexpr double kNodeRounding = 0x1p-21;
+constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
+// Of the height of a light above a plane, relative to the coordinates it comes from.
+constexpr double kHeightRounding = 0x1p-48;
 // Distances are trusted to this.
 constexpr double kLengthMargin = 0x1p-30;
 
@@ -32,8 +35,11 @@ struct SumBounds {
     double spread = 0;
     for (int c = 0; c < 3; ++c) {
       if (most[c] == 0 && error[c] == 0) continue;
+      // Nodes must be ordinary floats.
+      const bool is_ordinary = least[c] >= kLeastNode && most[c] + error[c] <= kMostNode;
+      if (!is_ordinary) return Box3::kInf;
       const double absolute = error[c] + kNodeRounding * (most[c] + error[c]);
-      spread = std::max(spread, least[c] > 0 ? absolute / least[c] : Box3::kInf);
+      if (!(absolute / least[c] <= spread)) spread = absolute / least[c];
     }
     return spread * (1 + kLengthMargin);
   }
@@ -112,7 +118,9 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
     const double nearest = std::max(height, distance - radius) * (1 - kLengthMargin);
     const double farthest = (distance + radius) * (1 + kLengthMargin);
     const Rgb strength = Scaled(light.irradiance, height);
-    bounds.error += Scaled(strength, stretch / (81 * PowerOf(nearest, 5)));
+    const double noise =
+        kHeightRounding * (Length(center) + Length(light.position) + radius) / height;
+    bounds.error += Scaled(strength, stretch / (81 * PowerOf(nearest, 5)) + noise / nearest);
     bounds.least += Scaled(strength, 1 / farthest);
     bounds.most += Scaled(strength, 1 / nearest);
     for (size_t k = 0; k < 16; ++k) {

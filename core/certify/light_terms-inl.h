@@ -61,6 +61,7 @@ class LightTerms {
   Verdict Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
               const PointCloud& cloud) {
     const Scene& scene = context_.scene;
+    if (!cloud.IsFinite()) return Verdict::kPeak;
     const Vec3d normal = hit.MiddleNormal();
     if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
     const PatchHull hull = HullAbout(cloud, Normalized(normal));
@@ -144,6 +145,8 @@ class LightTerms {
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
+        // Beyond, the powers in the derivatives would overflow.
+        if (!(std::pow(ratio.hi(), light.fade_power / 2) < kMostFading)) return false;
         strength = Inverse(Jet(Power(ratio, light.fade_power / 2) + 1.0)) * 2.0;
       }
     }
@@ -186,6 +189,7 @@ class LightTerms {
     r.ds = IntervalPack<2 * D>::All({-kUnbounded, kUnbounded});
     return r;
   }
+  static constexpr double kMostFading = 1e30;
   static constexpr double kUnbounded = 1e30;
 
   // `opening` is l.v, the cosine between the light and the way back.

@@ -24,20 +24,30 @@ struct PathCoords {
   RayCoords coords{};
 };
 
+// A hit is off by some 2^-52 of the distance from which its ray comes. Certificates allow for
+// 2^-34 of the object's reach (margins-inl.h): farther rays than this many times the reach are left
+// to the tracer.
+inline constexpr double kMaxHitDistance = 4096;
+
 class PathTree {
  public:
   using Node = PathNode;
 
-  explicit PathTree(const Object& object) : chart_(object), cells_(kFacePairs) {}
+  explicit PathTree(const Object& object)
+      : reach_(Length(object.bounds.Extent()) + Length(object.bounds.Center())),
+        chart_(object),
+        cells_(kFacePairs) {}
 
   const ObjectChart& chart() const { return chart_; }
   CellTree<PathTraits>& cells() { return cells_; }
   const CellTree<PathTraits>& cells() const { return cells_; }
 
   // The coordinates of a ray that hits the object from outside, at its first crossing with the
-  // ray's line; nothing for other hits, and where the line has no coordinates.
+  // ray's line; nothing for other hits, for rays from so far away that their hits are not accurate
+  // enough, and where the line has no coordinates.
   std::optional<PathCoords> CoordsOf(const Hit& hit, const Vec3d& direction) const {
     if (!hit.first_on_line || hit.side != Side::kOutside) return std::nullopt;
+    if (!(hit.t <= kMaxHitDistance * reach_)) return std::nullopt;
     const int pair = chart_.PairOf(direction);
     // Measured from the hit: far eyes would otherwise cost the coordinates their last digits.
     const auto coords = chart_.CoordsOf(pair, hit.point, direction);
@@ -48,6 +58,7 @@ class PathTree {
   uint64_t CountBytes() const { return sizeof(PathTree) - sizeof(cells_) + cells_.CountBytes(); }
 
  private:
+  double reach_;  // the object's size plus its distance from the origin
   ObjectChart chart_;
   CellTree<PathTraits> cells_;
 };

@@ -44,7 +44,8 @@ class RadianceSum {
   }
   void AddConstant(const Rgb& colour) { Add(colour, Jet::Constant(1)); }
 
-  // Largest error of the interpolant below relative to max(radiance, floor), for all rays.
+  // Largest error of the interpolant below relative to max(radiance, floor), for all rays. Infinite
+  // where some bound is not a number, and where floats could not hold the corners.
   double Spread(double floor) const {
     double spread = 0;
     for (const Channel& c : channels_) {
@@ -52,6 +53,9 @@ class RadianceSum {
           Above(SumOfLanes(Magnitudes(c.curvature)) / 8) + c.slack + kSumRounding * c.most;
       const double error = std::min(c.error + kSumRounding * c.most, summed);
       const double least = std::max(c.least, floor);
+      const bool is_bounded = std::isfinite(c.error) && std::isfinite(summed) && c.least >= 0 &&
+                              c.most + c.error < std::numeric_limits<float>::max();
+      if (!is_bounded) return std::numeric_limits<double>::infinity();
       // What is stored is off by kStorageRounding of itself, at most of c.most + error.
       spread = std::max(spread, Above((error + kStorageRounding * (c.most + error)) / least));
     }

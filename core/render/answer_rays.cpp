@@ -233,8 +233,12 @@ void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCa
 }
 
 void Batch::TraceWithTrees(CertifiedTrees& trees) {
+  // Who cancels does not wait for what others would learn either.
   const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
-    pool_.ParallelFor(count, body, &stats_.cpu_ms);
+    const auto unless_cancelled = [&](size_t i) {
+      if (!IsCancelled()) body(i);
+    };
+    pool_.ParallelFor(count, unless_cancelled, &stats_.cpu_ms);
   };
   const std::vector<uint32_t> rest = Unanswered();
   for (int wave = 0; wave < kWaves && !IsCancelled(); ++wave) {
@@ -259,6 +263,7 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
       samples.insert(samples.end(), own.begin(), own.end());
     });
     const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
+    if (IsCancelled()) return;
     uint64_t certified = trees.surfaces.Refine(weight, loop);
     if (!is_last) certified += trees.paths.Refine(options_.limits, samples, weight, loop);
     stats_.cells_tried += certified;

@@ -78,7 +78,10 @@ class Bundle {
 
   double Most(const Vec3d& n) const {
     double most = -Box3::kInf;
-    for (const Vec3d& p : points_) most = std::max(most, Dot(n, p - origin_));
+    for (const Vec3d& p : points_) {
+      const double along = Dot(n, p - origin_);
+      if (!(along <= most)) most = along;  // what is not a number stays, and separates nothing
+    }
     return most;
   }
 

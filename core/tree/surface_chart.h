@@ -115,6 +115,8 @@ class SurfaceChart {
     return is_thin_ && Dot(facing, planes_[0].normal) < 0;
   }
 
+  uint64_t HeapBytes() const { return planes_.capacity() * sizeof(PlanePatch); }
+
   // World length.
   double Slack() const { return slack_; }
 

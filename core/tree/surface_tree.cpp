@@ -44,7 +44,7 @@ std::optional<size_t> SurfaceTree::SideOf(const Hit& hit) const {
 }
 
 uint64_t SurfaceTree::CountBytes() const {
-  return sizeof(SurfaceTree) - sizeof(cells_) + cells_.CountBytes();
+  return sizeof(SurfaceTree) - sizeof(cells_) + chart_.HeapBytes() + cells_.CountBytes();
 }
 
 }  // namespace linetree
