@@ -66,14 +66,9 @@ absl::Status MeasureLights(const BenchCertifyFlags& flags, WorkerPool& pool,
   return absl::OkStatus();
 }
 
-absl::Status MeasureFrames(const BenchCertifyFlags& flags, WorkerPool& pool, CertifyReport& report,
+absl::Status MeasureFrames(const BenchCertifyFlags& flags, const std::vector<std::string>& files,
+                           WorkerPool& pool, CertifyReport& report,
                            const std::function<void(double)>& progress) {
-  auto files = flags.scenes;
-  if (files.empty()) {
-    auto found = ScenesIn(flags.scenes_dir);
-    if (!found.ok()) return found.status();
-    files = *std::move(found);
-  }
   for (size_t i = 0; i < files.size(); ++i) {
     const auto scene = LoadSceneFile(files[i]);
     if (!scene.ok()) return scene.status();
@@ -92,6 +87,13 @@ absl::Status MeasureFrames(const BenchCertifyFlags& flags, WorkerPool& pool, Cer
 }
 
 absl::StatusOr<CertifyReport> Measure(const BenchCertifyFlags& flags) {
+  // What is missing is better known before the work than after it.
+  std::vector<std::string> files = flags.scenes;
+  if (files.empty() && flags.Wants("frames")) {
+    auto found = ScenesIn(flags.scenes_dir);
+    if (!found.ok()) return found.status();
+    files = *std::move(found);
+  }
   WorkerPool pool(flags.threads);
   CertifyReport report;
   report.cell_options = flags.cells;
@@ -105,7 +107,7 @@ absl::StatusOr<CertifyReport> Measure(const BenchCertifyFlags& flags) {
   }
   if (flags.Wants("frames")) {
     ProgressBar bar(shows, "bench certify: frames");
-    auto s = MeasureFrames(flags, pool, report, [&](double share) { bar.Show(share); });
+    auto s = MeasureFrames(flags, files, pool, report, [&](double share) { bar.Show(share); });
     if (!s.ok()) return s;
   }
   return report;

@@ -100,6 +100,36 @@ TEST(BenchCommand, AuditChecksItsFlags) {
   EXPECT_NE(RunLinetree(BenchAudit({"--scene", "missing.nff"})).exit_status, 0);
 }
 
+TEST(BenchCommand, CertifyPrintsItsThreeTables) {
+  TempDir dir;
+  const Finished run =
+      RunLinetree({"bench", "certify", "--cell-scenes", "3", "--scenes", SourceFile("scenes"),
+                   "--scene", SourceFile("scenes/glass.textproto"), "--frames", "2", "--size", "64",
+                   "--threads", "2", "--json", dir.File("c.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("Random 4D cells"));
+  EXPECT_THAT(run.out, HasSubstr("Lights over "));
+  EXPECT_THAT(run.out, HasSubstr("\n0 violations\n"));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("c.json")));
+  ASSERT_EQ(json["cells"].size(), 5u);
+  // Smaller cells are certified more often; what is certified is looked at.
+  EXPECT_GT(json["cells"][4]["same_paths"], json["cells"][0]["same_paths"]);
+  EXPECT_GT(json["cells"][4]["rays"], 1000);
+  ASSERT_EQ(json["lights"].size(), 4u);
+  EXPECT_EQ(json["lights"][3]["lights"], 128);
+  EXPECT_GT(json["lights"][0]["at_most_one_undecided"], 0);
+  ASSERT_EQ(json["frames"].size(), 4u);
+  EXPECT_EQ(json["frames"][0]["unequal"], 0);
+  EXPECT_EQ(json["frames"][0]["pixels"], 3 * 64 * 64);
+  EXPECT_LT(json["frames"][0]["warm_searches"], 1);
+}
+
+TEST(BenchCommand, CertifyChecksItsFlags) {
+  EXPECT_EQ(RunLinetree({"bench", "certify", "--part", "nonsense"}).exit_status, 2);
+  EXPECT_EQ(RunLinetree({"bench", "certify", "--epsilons", "2"}).exit_status, 2);
+  EXPECT_NE(RunLinetree({"bench", "certify", "--scenes", "nowhere"}).exit_status, 0);
+}
+
 TEST(BenchCommand, ErrorWritesTableAndPlot) {
   TempDir dir;
   const Finished run = RunLinetree(
