@@ -28,11 +28,12 @@ inline constexpr uint32_t kMinPathUses = 64;
 inline constexpr uint32_t kMinPathDivision = 4 * kMinPathUses;
 
 // A cell costs about as much as tracing fifty rays: one for so many rays keeps the price of
-// learning below a twentieth of a frame. The cells that most rays ask for come first.
+// learning below a tenth of a frame. The cells that most rays ask for come first.
 inline constexpr double kRaysPerNewCell = 512;
+inline constexpr size_t kMinNewCells = 64;  // small batches may have so many all the same
+
 // Samples that one reader takes; what more rays would add is not worth the memory.
 inline constexpr size_t kMaxSamples = 4096;
-inline constexpr size_t kMinNewCells = 64;  // small batches may have so many all the same
 
 // Path limits for which there are trees at the same time.
 inline constexpr size_t kMaxPathForests = 8;
@@ -59,17 +60,17 @@ class PathCache {
 
     const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
 
-    // Radiance along a ray with this hit, if its
-    // cell may answer at epsilon: then kCertified, else why not.
+    // Radiance along a ray with this hit, if a cell around it may answer at epsilon: then
+    // kCertified, else why not.
     Verdict Interpolate(const Hit& hit, const Vec3d& direction, double epsilon,
                         Rgb& radiance) const;
 
    private:
-    // visit(const PathNode&) for the cells around a ray of which something is known, the largest
-    // first; false when the ray has no place in any tree.
     void Take(const Sample& sample) const {
       if (samples_ != nullptr && samples_->size() < kMaxSamples) samples_->push_back(sample);
     }
+    // visit(const PathNode&) for the cells around a ray of which something is known, the largest
+    // first; false when the ray has no place in any tree.
     template <class Fn>
     bool ForEachKnown(const Hit& hit, const Vec3d& direction, PathCoords& at, Fn&& visit) const;
 
