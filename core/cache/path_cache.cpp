@@ -226,7 +226,8 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
   const double rays = static_cast<double>(samples.size()) * weight;
   size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
   while (!groups.empty()) {
-    const std::vector<Sample> next = Descend(*forest, std::move(groups), weight, loop, allowance, certified);
+    const std::vector<Sample> next =
+        Descend(*forest, std::move(groups), weight, loop, allowance, certified);
     groups = GroupByLeaf(*forest, next);
   }
   Evict();
