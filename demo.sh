@@ -17,7 +17,7 @@ usage() {
 usage: ./demo.sh [--help]
 Flies along $path through $scene ($size x $size, epsilon $epsilon) and leaves in $out/:
   frame_N.png      the frames of the first flight, from an empty cache
-  verdict_N.png    why each pixel was or was not interpolated (colours: linetree render --help)
+  source_N.png     where the answer to each pixel came from (colours: linetree render --help)
   classical_N.png  the same frames with every ray traced
   hit_rates.txt    hit rates and costs of every frame, also as hit_rates.json
   *.exr, *.json    what these were made from, with all layers and counters
@@ -63,7 +63,7 @@ fly() {
     --width "$size" --height "$size" --epsilon "$epsilon" "$@"
 }
 fly "First client, empty cache:" -o "$out/frame_%d.png" --stats "$out/cold.json"
-fly "Second client, the first one's cache:" --layer verdict -o "$out/verdict_%d.png" \
+fly "Second client, the first one's cache:" --layer source -o "$out/source_%d.png" \
   -o "$out/warm_%d.exr" --stats "$out/warm.json"
 fly "Third client, classical (every ray traced):" --mode classical -o "$out/classical_%d.png" \
   -o "$out/classical_%d.exr" --stats "$out/classical.json"
@@ -76,5 +76,5 @@ echo "Last frame of the second flight against classical:"
 echo
 python3 .ci/hit_rates.py "$out/cold.json" "$out/warm.json" "$out/classical.json" "$out"
 echo
-echo "Pictures: $PWD/$out/frame_*.png, verdict_*.png, classical_*.png"
+echo "Pictures: $PWD/$out/frame_*.png, source_*.png, classical_*.png"
 echo "Table:    $PWD/$out/hit_rates.txt and hit_rates.json"
