@@ -1,10 +1,10 @@
 #include "core/audit/cell_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
+#include "core/audit/clock.h"
 #include "core/audit/random_stream.h"
 #include "core/audit/sparse_scene.h"
 #include "core/certify/path_certifier.h"
@@ -13,11 +13,6 @@
 
 namespace linetree {
 namespace {
-
-double NowUs() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double, std::micro>(now).count();
-}
 
 // One list of steps, for the first surface of one ray.
 class OneList : public PathLists {

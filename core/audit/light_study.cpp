@@ -1,9 +1,9 @@
 #include "core/audit/light_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "core/audit/clock.h"
 #include "core/cache/surface_cache.h"
 #include "core/trace/shade.h"
 
@@ -13,11 +13,6 @@ namespace {
 // Enough for trees to grow as deep as they will.
 constexpr int kWarmFrames = 12;
 constexpr uint64_t kMemoryBytes = uint64_t{1} << 30;
-
-double NowUs() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double, std::micro>(now).count();
-}
 
 const ParallelLoop kInTurn = [](size_t count, const std::function<void(size_t)>& body) {
   for (size_t i = 0; i < count; ++i) body(i);

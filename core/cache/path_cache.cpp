@@ -125,8 +125,7 @@ PathCache::Forest& PathCache::OpenForest(const PathLimits& limits) {
 void PathCache::LookAround(Forest& forest, Group& group, const PathCoords& at) const {
   const PathTree& tree = *forest.store.Get(static_cast<size_t>(group.object));
   tree.cells().ForEachAround(at.pair, CellAt(at.coords, max_depth_), [&](const PathNode& node) {
-    if (!node.payload) return;
-    if (node.payload->steps.empty()) return;
+    if (!node.payload || node.payload->steps.empty()) return;
     if (&node != group.node) group.parent = node.payload.get();
     group.barren_levels = node.payload->ListsAnything() ? 0 : group.barren_levels + 1;
   });

@@ -51,10 +51,6 @@ std::array<float, 3> ToNode(const Rgb& sum) {
 
 }  // namespace
 
-DiffuseSummer::DiffuseSummer(const Scene& scene) : scene_(scene) {
-  for (const Object& object : scene.objects) shapes_.push_back(MakeJetShape(object));
-}
-
 std::vector<size_t> DiffuseSummer::Summable(const CellLights& lights) const {
   std::vector<size_t> summable;
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
@@ -70,7 +66,7 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
   if (IsBlack(scene_.MaterialOf(object).diffuse)) return;
   const std::vector<size_t> summable = Summable(lights);
   if (summable.size() < static_cast<size_t>(kMinSummedLights)) return;
-  const JetShape& shape = shapes_[static_cast<size_t>(object)];
+  const JetShape shape = MakeJetShape(scene_.objects[static_cast<size_t>(object)]);
   if (!shape.corner_normals.empty()) return;  // the normal turns: one by one
   if (const auto plane = chart.PlanarCellOf(patch, cell)) {
     if (shape.IsThin()) {
@@ -82,7 +78,7 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
       lights.sums[0] = SumOnPlane(*plane, shape.PlaneOf(face)->normal, summable);
     }
   } else {
-    lights.sums[0] = SumOnCurve(object, patch, cell, summable);
+    lights.sums[0] = SumOnCurve(shape, patch, cell, summable);
   }
   if (!lights.sums[0] && !lights.sums[1]) return;
   for (const size_t i : summable) lights.lights[i].summed = true;
@@ -135,9 +131,9 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
   return sum;
 }
 
-DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(int object, int patch, const SurfaceCell& cell,
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const JetShape& shape, int patch,
+                                                  const SurfaceCell& cell,
                                                   const std::vector<size_t>& lights) const {
-  const JetShape& shape = shapes_[static_cast<size_t>(object)];
   scalar_jets::CurvedCell curve(shape, patch, cell);
   if (!curve.IsValid()) return nullptr;
   auto sum = std::make_unique<DiffuseSum>();

@@ -29,7 +29,7 @@ inline constexpr double kMaxSumSpread = 0.5;
 class DiffuseSummer {
  public:
   // Keeps a reference to the scene, which must outlive it.
-  explicit DiffuseSummer(const Scene& scene);
+  explicit DiffuseSummer(const Scene& scene) : scene_(scene) {}
 
   // Adds to a cell's lights, as they are certified, the sums that are worth it, and marks what is
   // in them.
@@ -44,11 +44,10 @@ class DiffuseSummer {
   // On the side that `normal` points to.
   MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
                       const std::vector<size_t>& lights) const;
-  MaybeSum SumOnCurve(int object, int patch, const SurfaceCell& cell,
+  MaybeSum SumOnCurve(const JetShape& shape, int patch, const SurfaceCell& cell,
                       const std::vector<size_t>& lights) const;
 
   const Scene& scene_;
-  std::vector<JetShape> shapes_;  // by object
 };
 
 }  // namespace linetree

@@ -183,11 +183,7 @@ class HitEvaluator {
   }
   // Object coordinates are in units of the object's size, whose rounding the world's distances set.
   double ObjectScale(const JetShape& shape, const Line& line) const {
-    double rows = 0;
-    for (const Vec3d& row : shape.frame.object_from_world.row) {
-      rows = std::max(rows, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
-    }
-    return 1 + rows * OriginScale(shape) + SizeOf(line.p);
+    return 1 + shape.frame_rows * OriginScale(shape) + SizeOf(line.p);
   }
 
   bool EvaluateSphere(bool from_itself, JetHit<D>& hit) const {

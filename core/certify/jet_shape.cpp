@@ -87,14 +87,6 @@ const Plane* JetShape::PlaneOf(int face) const {
   return nullptr;
 }
 
-double JetShape::FrameScale() const {
-  double rows = 0;
-  for (const Vec3d& row : frame.object_from_world.row) {
-    rows = std::max(rows, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
-  }
-  return 1 + rows * reach;
-}
-
 JetShape MakeJetShape(const Object& object) {
   Maker maker;
   std::visit([&](const auto& s) { maker(s); }, object.shape);
@@ -104,6 +96,10 @@ JetShape MakeJetShape(const Object& object) {
         std::max({shape.reach, std::abs(object.bounds.min[i]), std::abs(object.bounds.max[i])});
   }
   shape.reach += Length(object.bounds.Extent());
+  for (const Vec3d& row : shape.frame.object_from_world.row) {
+    shape.frame_rows =
+        std::max(shape.frame_rows, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+  }
   return shape;
 }
 

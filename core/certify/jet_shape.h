@@ -38,9 +38,12 @@ struct JetShape {
 
   // The plane of a face, or null for the curved face.
   const Plane* PlaneOf(int face) const;
+  // Largest sum of absolute entries of a row of object_from_world: frame units per world length.
+  double frame_rows = 0;
+
   // How accurately points of the object are known in its own frame's units, but for the rounding of
   // rays that come from farther away than the world's origin: a multiple of 2^-53.
-  double FrameScale() const;
+  double FrameScale() const { return 1 + frame_rows * reach; }
   bool IsThin() const { return kind == Kind::kPolygon || kind == Kind::kDisc; }
 };
 

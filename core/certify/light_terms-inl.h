@@ -122,7 +122,7 @@ class LightTerms {
     if (light.kind == LightKind::kPoint) {
       PointCloud at;
       at.points.fill(light.position);
-      if (!IsCertainlyOutside(at, shape, context_.search.Surplus(object))) return false;
+      if (!IsCertainlyOutside(at, shape, context_.search().Surplus(object))) return false;
     }
     filter = context_.scene.MaterialOf(object).transmit;
     return true;

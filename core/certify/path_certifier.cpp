@@ -9,7 +9,6 @@ CellBox BoxOf(const CellId& cell) {
 PathCertifier::Context::Context(const Tracer& t)
     : tracer(t),
       scene(t.scene()),
-      search(t),
       lights(t),
       world(scene.WorldBounds()),
       floor(RadianceFloor(scene)) {

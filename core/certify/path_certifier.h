@@ -52,10 +52,11 @@ class PathCertifier {
   // What the parts of the certifier share.
   struct Context {
     explicit Context(const Tracer& tracer);
+    const CandidateSearch& search() const { return lights.search(); }
+
     const Tracer& tracer;
     const Scene& scene;
     std::vector<JetShape> shapes;  // by object
-    CandidateSearch search;
     LightCertifier lights;
     Box3 world;
     double floor;  // radiance below which errors are not relative any more

@@ -227,7 +227,7 @@ class PathWalk {
     const PointCloud cloud = CloudOf(point);
     for (const int32_t other : neighbours) {
       const Shape& shape = context_.scene.objects[static_cast<size_t>(other)].shape;
-      if (IsCertainlyOutside(cloud, shape, context_.search.Surplus(other))) continue;
+      if (IsCertainlyOutside(cloud, shape, context_.search().Surplus(other))) continue;
       if (!IsCertainlyInside(cloud, shape)) return false;
       ior = context_.scene.MaterialOf(other).ior;
       return true;
@@ -318,7 +318,7 @@ class PathWalk {
       Refuse(Verdict::kPeak);
       return;
     }
-    const RayBundle bundle(context_.scene, context_.search, leg.start, begin, end);
+    const RayBundle bundle(context_.scene, context_.search(), leg.start, begin, end);
     std::vector<int32_t> candidates =
         bundle.Candidates(ends ? middle.object : kNoObject, inherited);
     if (!certain || !candidates.empty()) {

@@ -51,6 +51,11 @@ class Batch {
   void LookUp(const RadianceCache::Session& session, std::vector<CellId>& unbuilt);
   // Of the unbuilt cells, those that enough rays ask for. Drops the rays of the others.
   std::vector<CellRef> ChooseCells(const std::vector<CellId>& unbuilt);
+  // What interpolants may be off by; 0: there is no room for any.
+  double InterpolationError() const {
+    const double asked = options_.max_relative_error;
+    return asked >= kMinInterpolationError ? asked : 0;
+  }
   // Answers one ray with what the certified trees know.
   void AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCache::Reader& paths,
                        RayCounts& counts);
@@ -210,9 +215,8 @@ void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCa
   const Hit& hit = hits_[ray];
   const Vec3d& direction = rays_[ray].direction;
   RayAnswer& answer = answers_[ray];
-  if (options_.max_relative_error >= kMinInterpolationError) {
-    answer.verdict =
-        paths.Interpolate(hit, direction, options_.max_relative_error, answer.radiance);
+  if (const double epsilon = InterpolationError(); epsilon > 0) {
+    answer.verdict = paths.Interpolate(hit, direction, epsilon, answer.radiance);
     if (answer.verdict == Verdict::kCertified) {
       answer.source = Source::kInterpolated;
       return;
@@ -248,14 +252,12 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     }
     // The last wave has nobody to tell where rays go.
     const bool is_last = wave == kWaves - 1;
-    const double asked = options_.max_relative_error;
-    const double epsilon = asked >= kMinInterpolationError ? asked : 0;
     std::mutex samples_mutex;
     std::vector<PathCache::Sample> samples;
     ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
       std::vector<PathCache::Sample> own;
       {
-        const SurfaceCache::Reader lights(trees.surfaces, epsilon);
+        const SurfaceCache::Reader lights(trees.surfaces, InterpolationError());
         const PathCache::Reader paths(trees.paths, options_.limits, is_last ? nullptr : &own);
         for (size_t k = begin; k < end; ++k) AnswerWithTrees(part[k], lights, paths, counts);
       }

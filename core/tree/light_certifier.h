@@ -48,6 +48,9 @@ class LightCertifier {
   // Keeps a reference to the tracer, which must outlive it.
   explicit LightCertifier(const Tracer& tracer);
 
+  // Which it searches occluders with.
+  const CandidateSearch& search() const { return search_; }
+
   // Knowledge about a piece of the given object. With `parent`, what is known of a larger piece
   // that contains it, only that one's candidates are looked at.
   CellLights Certify(int object, const PatchHull& hull, const CellLights* parent) const;
