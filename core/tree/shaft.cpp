@@ -12,9 +12,6 @@ double Sup(const Box3& b, const Vec3d& n) {
 }
 double Inf(const Box3& b, const Vec3d& n) { return -Sup(b, -n); }
 
-// Rounding of a support value: three products and two sums, each 2^-53 of the largest term.
-constexpr double kShaftRounding = 0x1p-50;
-
 double Magnitude(const Box3& b, const Vec3d& n) {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {

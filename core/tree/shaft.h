@@ -9,14 +9,18 @@
 
 namespace linetree {
 
+// Rounding of a support value n.x of a box, relative to the sum of |n_i| |x_i| with the largest
+// coordinates: two products (n has a zero) and two sums, each 2^-53; doubled.
+inline constexpr double kShaftRounding = 0x1p-50;
+
 class Shaft {
  public:
   // The convex hull of two boxes, neither of them empty.
   Shaft(const Box3& from, const Box3& to);
 
-  // Whether the box certainly has no point in common with the hull. Never wrong when it says yes
-  // (but for rounding of kShaftRounding of the sizes involved); may say no although they are
-  // disjoint, because only axis-parallel planes and planes parallel to one axis are tried.
+  // Whether the box certainly has no point in common with the hull. Never wrong when it says yes;
+  // may say no although they are disjoint, because only axis-parallel planes and planes parallel
+  // to one axis are tried, and where the gap is within kShaftRounding of the coordinates involved.
   bool Misses(const Box3& box) const;
 
  private:

@@ -1,9 +1,13 @@
 // Prints a digest of the bits of classical and certified answers, of rays and scenes of all kinds.
-// Built several times from the same sources of the core with different optimisation: the digests
-// must be equal (digest_test.py).
+// Built several times from the same sources of the core with different optimisation, and told to
+// use the best vectors of the machine or (--narrow) the narrowest that it is compiled for: the
+// digests must be equal (digest_test.py). Which they are goes to the error stream.
 #include <bit>
 #include <cstdio>
+#include <cstring>
 
+#include "core/jet/simd_targets.h"
+#include "hwy/highway.h"
 #include "tests/stress/hard_rays.h"
 #include "tests/stress/hard_scenes.h"
 #include "tests/stress/promise.h"
@@ -57,12 +61,23 @@ void PrintDigests(const char* name, const ScenePtr& scene, test::Random& random)
   certified.Print("  certified");
 }
 
+// Of the compiled targets that the machine has; larger numbers are narrower.
+void UseVectors(bool narrow) {
+  const int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
+  int64_t target = all & -all;
+  for (int64_t left = all; narrow && left != 0; left &= left - 1) target = left & -left;
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  std::fprintf(stderr, "%s\n", hwy::TargetName(target));
+}
+
 }  // namespace
 }  // namespace linetree::stress
 
-int main() {
+int main(int argc, char** argv) {
   using namespace linetree;
   using namespace linetree::stress;
+  UseVectors(argc > 1 && std::strcmp(argv[1], "--narrow") == 0);
   test::Random random = RandomFor("Digest");
   for (const NamedScene& named : AllHardScenes()) {
     PrintDigests(named.name, std::make_shared<const Scene>(named.make(random)), random);

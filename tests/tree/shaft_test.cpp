@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/random.h"
 
 namespace linetree {
@@ -29,6 +31,40 @@ TEST(ShaftTest, NeverMissesABoxThatASegmentTouches) {
     blocker.Add(on);
     blocker.Add(on + random.InBox({-1, -1, -1}, {1, 1, 1}));
     ASSERT_FALSE(Shaft(from, to).Misses(blocker)) << "seed 6, case " << i;
+  }
+}
+
+// The blocker's corner is the middle of a segment between like corners, exactly: it lies on the
+// very plane that would part them, and nothing but kShaftRounding keeps rounding from doing so.
+TEST(ShaftTest, RoundingPartsNothingThatTouches) {
+  test::Random random(8);
+  // Multiples of 2^-24 below 2^24: sums and halves of them are exact.
+  const auto point = [&](double size) {
+    Vec3d p;
+    for (int i = 0; i < 3; ++i)
+      p[i] = std::ldexp(std::floor(random.Uniform(-size, size) * 0x1p24), -24);
+    return p;
+  };
+  for (int i = 0; i < 200000; ++i) {
+    const Vec3d at = point(random.LogUniform(1, 0x1p23));
+    const Vec3d a = at + point(4), b = at + point(4), on = (a + b) * 0.5;
+    // Both boxes lie on one side of the plane through a and b along an axis, the blocker on the
+    // other.
+    const int axis = random.Int(0, 2), u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const bool rises = (b[u] > a[u]) == (b[v] > a[v]);
+    const double side = random.Int(0, 1) == 0 ? 1 : -1;
+    Vec3d inner;
+    inner[axis] = 1;
+    inner[u] = side;
+    inner[v] = rises ? -side : side;
+    Box3 from, to, blocker;
+    from.Add(a);
+    from.Add(a + inner);
+    to.Add(b);
+    to.Add(b + inner);
+    blocker.Add(on);
+    blocker.Add(on - inner);
+    ASSERT_FALSE(Shaft(from, to).Misses(blocker)) << "seed 8, case " << i;
   }
 }
 
