@@ -11,6 +11,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   AddBenchCertify(*app, commands);
   AddBenchError(*app, commands);
   AddBenchPaper(*app, commands);
+  AddBenchPeers(*app, commands);
 }
 
 }  // namespace linetree

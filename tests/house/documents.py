@@ -12,7 +12,7 @@ PROGRAMS = {"linetree", "linetreed"}
 MIN_HEADER_WORDS = 12
 # What may stand in the root, apart from dotfiles and what .gitignore names.
 ROOT = {"README.md", "CMakeLists.txt", "demo.sh", "test.sh",
-        "client", "core", "proto", "scenes", "server", "tests"}
+        "client", "core", "peers", "proto", "scenes", "server", "tests"}
 _LINK = re.compile(r"\]\(([^)#:]+)\)")
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 

@@ -2,7 +2,9 @@
 
     core/  math -> jet -> scene -> trace -> tree -> certify -> cache -> render -> audit; io may
            include all of them
-    client, server include core; the server may share code with client/library, nothing else crosses
+    peers (other ray tracers, for comparison) includes core; peers/embree nothing else of peers
+    client, server include core; the server may share code with client/library, the programs in client
+    include peers; nothing else crosses
 
 Protobuf messages are known in core/io only (of core), gRPC nowhere in core.
 """
@@ -20,7 +22,7 @@ _PROTOBUF = re.compile(r"^google/protobuf/|\.pb\.h$")
 def complaints(root):
     """One line for every include that runs against the arrows."""
     found = []
-    for path in sources(root, ["core", "server", "client"], {".h", ".cpp"}):
+    for path in sources(root, ["core", "peers", "server", "client"], {".h", ".cpp"}):
         text = (root / path).read_text()
         for bracket, target in _INCLUDE.findall(text):
             reason = _refusal(path.parts, target, bracket == '"')
@@ -39,6 +41,8 @@ def _refusal(parts, target, quoted):
         return _core_refusal(parts, head[1])
     if head[0] == "server" and parts[0] != "server":
         return "only the server includes the server"
+    if head[0] == "peers":
+        return _peers_refusal(parts, head[1])
     if head[0] == "client":
         return _client_refusal(parts, head[1])
     if quoted and "/" not in target:
@@ -58,9 +62,17 @@ def _core_refusal(parts, wanted):
     return None
 
 
+def _peers_refusal(parts, wanted):
+    if parts[0] == "peers":
+        return "embree is one tracer among the peers" if parts[1] == "embree" != wanted else None
+    if parts[0] == "client" and parts[1] != "library":
+        return None
+    return "only the client's programs compare with peers"
+
+
 def _client_refusal(parts, wanted):
-    if parts[0] == "core":
-        return "core knows no client"
+    if parts[0] in ("core", "peers"):
+        return f"{parts[0]} knows no client"
     if wanted == "library":
         return None
     if parts[0] == "server":

@@ -16,6 +16,9 @@ class IncludeArrows(unittest.TestCase):
             "core/io/a.cpp": '#include "core/render/a.h"\n#include "linetree/v1/scene.pb.h"\n',
             "server/a.cpp": '#include "client/library/t.h"\n#include <grpcpp/grpcpp.h>\n',
             "client/program/a.cpp": '#include "client/library/c.h"\n#include "core/io/l.h"\n',
+            "client/program/b.cpp": '#include "peers/peer.h"\n',
+            "peers/a.cpp": '#include "peers/embree/t.h"\n#include "core/io/pov.h"\n',
+            "peers/embree/a.cpp": '#include "peers/embree/b.h"\n#include "core/trace/hit.h"\n',
         }
         with MadeTree(files) as root:
             self.assertEqual(include_arrows.complaints(root), [])
@@ -35,6 +38,11 @@ class IncludeArrows(unittest.TestCase):
             "client/library/k.cpp": '#include "client/program/main.h"',
             "server/l.cpp": '#include "client/program/main.h"',
             "core/math/m.cpp": '#include "vec3.h"',
+            "core/render/n.cpp": '#include "peers/peer.h"',
+            "client/library/o.cpp": '#include "peers/peer.h"',
+            "server/p.cpp": '#include "peers/peer.h"',
+            "peers/q.cpp": '#include "client/command/table.h"',
+            "peers/embree/r.cpp": '#include "peers/peer.h"',
         }
         for path, text in wrong.items():
             with self.subTest(path), MadeTree({path: text + "\n"}) as root:

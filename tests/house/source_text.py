@@ -6,7 +6,7 @@ import re
 from trees import sources
 
 MAX_LINES = 400
-CODE = ["core", "server", "client"]
+CODE = ["core", "peers", "server", "client"]
 
 # What must not stand in code, tests or build files, and why. The patterns are written so that they
 # do not match themselves.

@@ -15,7 +15,7 @@ MIN_CHECKS = 150
 def misformatted(root):
     """C++ files that clang-format would change."""
     files = [str(root / path) for path in
-             sources(root, ["core", "server", "client", "tests"], {".h", ".cpp"})]
+             sources(root, ["core", "peers", "server", "client", "tests"], {".h", ".cpp"})]
     workers = os.cpu_count() or 1
     shares = [files[i::workers] for i in range(workers) if files[i::workers]]
     with concurrent.futures.ThreadPoolExecutor() as pool:

@@ -70,7 +70,8 @@ TEST(Usage, WhatBelongsToALocalCacheNeedsLocal) {
 TEST(Usage, EveryCommandExplainsItselfWithExamples) {
   const std::vector<std::vector<std::string>> commands = {
       {"render"},           {"fly"},     {"rays"}, {"stats"},          {"scene", "check"},
-      {"scene", "convert"}, {"compare"}, {"load"}, {"bench", "error"}, {"bench", "audit"}};
+      {"scene", "convert"}, {"compare"}, {"load"}, {"bench", "error"}, {"bench", "audit"},
+      {"bench", "peers"}};
   for (std::vector<std::string> command : commands) {
     std::string name = "linetree";
     for (const std::string& word : command) name += " " + word;
