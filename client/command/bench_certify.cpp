@@ -60,8 +60,10 @@ absl::Status MeasureLights(const BenchCertifyFlags& flags, WorkerPool& pool,
   if (!scene.ok()) return scene.status();
   for (const size_t count : kLightCounts) {
     const auto lit = WithLights(**scene, count);
-    report.lights.push_back(
-        StudyLights(*lit, lit->cameras.at(0), flags.frames.side, flags.min_footprint, pool));
+    for (const bool functions : {false, true}) {
+      report.lights.push_back(StudyLights(*lit, lit->cameras.at(0), flags.frames.side,
+                                          flags.min_footprint, functions, pool));
+    }
   }
   return absl::OkStatus();
 }

@@ -64,16 +64,22 @@ std::string CellTable(const CertifyReport& report) {
 
 std::string LightTable(const CertifyReport& report) {
   Table table({{"lights", Align::kRight},
+               {"functions", Align::kLeft},
                {"covered pixels", Align::kRight},
                {"at most 1 undecided", Align::kRight},
+               {"decided a pixel", Align::kRight},
                {"undecided a pixel", Align::kRight},
+               {"candidates each", Align::kRight},
+               {"answered", Align::kRight},
                {"cells", Align::kRight},
                {"bytes a cell", Align::kRight},
                {"us a cell", Align::kRight}});
   for (const LightStudyRow& row : report.lights) {
-    table.AddRow({absl::StrCat(row.lights), Grouped(row.covered),
+    table.AddRow({absl::StrCat(row.lights), row.functions ? "yes" : "no", Grouped(row.covered),
                   Percent(Share(row.nearly_decided, row.covered)),
-                  Ratio(Share(row.undecided, row.covered)), Grouped(row.cells),
+                  Ratio(Share(row.decided, row.covered)), Ratio(Share(row.undecided, row.covered)),
+                  Ratio(Share(row.candidates, row.undecided)),
+                  Percent(Share(row.answered, row.candidates)), Grouped(row.cells),
                   absl::StrFormat("%.0f", Share(row.bytes, row.cells)),
                   absl::StrFormat("%.1f", row.cell_us)});
   }
@@ -127,9 +133,13 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
   for (const LightStudyRow& row : report.lights) {
     json["lights"].push_back({{"scene", report.lights_scene},
                               {"lights", row.lights},
+                              {"functions", row.functions},
                               {"covered_pixels", row.covered},
                               {"at_most_one_undecided", row.nearly_decided},
+                              {"decided", row.decided},
                               {"undecided", row.undecided},
+                              {"candidates", row.candidates},
+                              {"answered_by_functions", row.answered},
                               {"cells", row.cells},
                               {"bytes", row.bytes},
                               {"cell_us", row.cell_us}});

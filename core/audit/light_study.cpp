@@ -18,15 +18,35 @@ const ParallelLoop kInTurn = [](size_t count, const std::function<void(size_t)>&
   for (size_t i = 0; i < count; ++i) body(i);
 };
 
-// Lights that a hit's surface faces and that the trees leave to be tested.
-int CountUndecided(const Scene& scene, const Hit& hit, const LightList* known) {
+// How many candidates of a list are answered by their functions at a hit.
+uint64_t CountAnswered(const KnownLights& known, const LightList& list) {
+  if (known.shadows == nullptr) return 0;
+  const auto first = list.candidates.data() - known.shadows->objects;
+  uint64_t answered = 0;
+  for (size_t i = 0; i < list.candidates.size(); ++i) {
+    const ShadowFunction& function = known.shadows->functions[static_cast<size_t>(first) + i];
+    const Shadowing shadowing =
+        ShadowingAt(function, known.shadows->coefficients, known.s, known.t);
+    answered += shadowing != Shadowing::kUnknown ? 1 : 0;
+  }
+  return answered;
+}
+
+// Adds the lights that a hit's surface faces; returns how many the trees leave to be tested.
+int AddLights(const Scene& scene, const Hit& hit, const KnownLights& known, LightStudyRow& row) {
   int undecided = 0;
   for (size_t i = 0; i < scene.lights.size(); ++i) {
     if (!(Dot(hit.normal, ViewOf(scene.lights[i], hit.point).to_light) > 0)) continue;
-    const LightKnowledge knowledge =
-        known == nullptr ? LightKnowledge::kUnknown : known[i].knowledge;
-    if (knowledge == LightKnowledge::kUnknown || knowledge == LightKnowledge::kListed) ++undecided;
+    const LightList list = known.lists == nullptr ? LightList{} : known.lists[i];
+    if (list.knowledge == LightKnowledge::kOn || list.knowledge == LightKnowledge::kOff) {
+      ++row.decided;
+      continue;
+    }
+    ++undecided;
+    row.candidates += list.candidates.size();
+    row.answered += CountAnswered(known, list);
   }
+  row.undecided += static_cast<uint64_t>(undecided);
   return undecided;
 }
 
@@ -58,9 +78,9 @@ std::shared_ptr<const Scene> WithLights(const Scene& scene, size_t count) {
 }
 
 LightStudyRow StudyLights(const Scene& scene, const Camera& camera, int side, double min_footprint,
-                          WorkerPool& pool) {
+                          bool functions, WorkerPool& pool) {
   const Tracer tracer(scene);
-  SurfaceCache cache(tracer, kMemoryBytes, min_footprint);
+  SurfaceCache cache(tracer, kMemoryBytes, min_footprint, functions);
   const EyeRays rays(camera, side, side);
   const auto width = static_cast<size_t>(side);
   std::vector<Hit> hits(width * width);
@@ -72,6 +92,7 @@ LightStudyRow StudyLights(const Scene& scene, const Camera& camera, int side, do
   });
   LightStudyRow row;
   row.lights = scene.lights.size();
+  row.functions = functions;
   double spent_us = 0;
   for (int frame = 0; frame < kWarmFrames; ++frame) {
     {
@@ -94,8 +115,7 @@ LightStudyRow StudyLights(const Scene& scene, const Camera& camera, int side, do
       ++row.nearly_decided;
       continue;
     }
-    const int undecided = CountUndecided(scene, hit, reader.Find(hit).lists);
-    row.undecided += static_cast<uint64_t>(undecided);
+    const int undecided = AddLights(scene, hit, reader.Find(hit), row);
     row.nearly_decided += undecided <= 1 ? 1 : 0;
   }
   return row;

@@ -13,8 +13,9 @@ struct SurfaceCache::Work {
   std::unique_ptr<const CellLights> lights{};  // the result
 };
 
-SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses)
-    : certifier_(tracer),
+SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses,
+                           bool uses_functions)
+    : certifier_(tracer, uses_functions),
       summer_(tracer.scene()),
       min_uses_(min_uses),
       memory_bytes_(memory_bytes),
@@ -47,17 +48,24 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight) {
   return works;
 }
 
+bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights) const {
+  return work.points >= min_uses_ && work.node->cell.depth < kMaxSurfaceDepth &&
+         !lights.IsDecided();
+}
+
 std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
                                                       const ParallelLoop& loop) {
   loop(works.size(), [&](size_t i) {
     Work& work = works[i];
     if (work.node->payload) return;
     const SurfaceChart& chart = store_.Get(work.object)->chart();
-    const PatchHull hull = chart.HullOf(work.node->root, work.node->cell);
-    auto lights = std::make_unique<CellLights>(
-        certifier_.Certify(static_cast<int>(work.object), hull, work.parent));
-    summer_.AddSums(static_cast<int>(work.object), chart, work.node->root, work.node->cell,
-                    *lights);
+    auto lights = std::make_unique<CellLights>(certifier_.Certify(
+        static_cast<int>(work.object), chart, work.node->root, work.node->cell, work.parent));
+    // Who is about to be divided answers nobody.
+    if (!ShouldDivide(work, *lights)) {
+      summer_.AddSums(static_cast<int>(work.object), chart, work.node->root, work.node->cell,
+                      *lights);
+    }
     work.lights = std::move(lights);
   });
   std::vector<Work> next;
@@ -68,9 +76,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       if (!work.lights) continue;  // the loop was cut short
       if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
     }
-    const bool divide = work.points >= min_uses_ && node.cell.depth < kMaxSurfaceDepth &&
-                        !node.payload->IsDecided();
-    if (!divide || !store_.Divide(node, clock_, memory_bytes_)) continue;
+    if (!ShouldDivide(work, *node.payload) || !store_.Divide(node, clock_, memory_bytes_)) continue;
     for (SurfaceNode& child : *node.children) {
       next.push_back({&child, work.object, work.points / 4, node.payload.get()});
     }

@@ -27,8 +27,9 @@ inline constexpr double kMinSurfaceUses = 200;
 class SurfaceCache {
  public:
   // Keeps a reference to the tracer, which must outlive the cache. Cells with `min_uses` or more
-  // are divided.
-  SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses = kMinSurfaceUses);
+  // are divided. `uses_functions` as for LightCertifier.
+  SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses = kMinSurfaceUses,
+               bool uses_functions = true);
 
   // Holds the lock: keep it short, a part of a frame.
   class Reader : public LightLists {
@@ -56,6 +57,8 @@ class SurfaceCache {
  private:
   struct Work;
 
+  // Whether smaller cells are worth their cost, with what is known of this one.
+  bool ShouldDivide(const Work& work, const CellLights& lights) const;
   std::vector<Work> CollectUsed(double weight);
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);

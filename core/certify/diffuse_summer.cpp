@@ -92,6 +92,11 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
   const double stretch = PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4);
   auto sum = std::make_unique<DiffuseSum>();
   std::array<Rgb, 16> nodes{};
+  std::array<Vec3d, 16> places;
+  for (size_t k = 0; k < places.size(); ++k) {
+    places[k] = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
+                cell.ev * (static_cast<double>(k / 4) / 3);
+  }
   SumBounds bounds;
   for (const size_t i : lights) {
     const Light& light = scene_.lights[i];
@@ -119,10 +124,8 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
     bounds.error += Scaled(strength, stretch / (81 * PowerOf(nearest, 5)) + noise / nearest);
     bounds.least += Scaled(strength, 1 / farthest);
     bounds.most += Scaled(strength, 1 / nearest);
-    for (size_t k = 0; k < 16; ++k) {
-      const Vec3d at = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
-                       cell.ev * (static_cast<double>(k / 4) / 3);
-      nodes[k] += Scaled(strength, 1 / Length(light.position - at));
+    for (size_t k = 0; k < places.size(); ++k) {
+      nodes[k] += Scaled(strength, 1 / Length(light.position - places[k]));
     }
   }
   sum->spread = bounds.Spread();

@@ -8,6 +8,7 @@
 
 #include "core/math/rgb.h"
 #include "core/trace/hit.h"
+#include "core/trace/shadow_function.h"
 
 namespace linetree {
 
@@ -16,7 +17,15 @@ enum class LightKnowledge : uint8_t {
   kOn,       // nothing is in between, for every point of the piece
   kOff,      // `occluder`, which is opaque, is in between for every point of the piece
   kListed,   // only the listed objects may be in between
+  // The whole piece faces away, so that nobody asks but for a grazing ray whose normal rounding has
+  // turned: search the scene.
+  kFacingAway,
 };
+
+// Whether somebody who knows this need not search the scene.
+inline bool SparesSearch(LightKnowledge knowledge) {
+  return knowledge != LightKnowledge::kUnknown && knowledge != LightKnowledge::kFacingAway;
+}
 
 // One light as seen from a piece of surface.
 struct LightList {
@@ -24,12 +33,20 @@ struct LightList {
   bool summed = false;                    // kOn: its diffuse light is part of KnownLights::diffuse
   int32_t occluder = kNoObject;           // kOff
   std::span<const int32_t> candidates{};  // kListed: at least one, ascending
+
+  // Whether smaller pieces need not be looked at.
+  bool IsDecided() const {
+    return knowledge != LightKnowledge::kUnknown && knowledge != LightKnowledge::kListed;
+  }
 };
 
 // What is known at one hit.
 struct KnownLights {
   // One entry for every light of the scene, or null when nothing is known.
   const LightList* lists = nullptr;
+  // Null, or functions for the candidates of all lists, and the hit's coordinates in them.
+  const CellShadows* shadows = nullptr;
+  float s = 0, t = 0;
   // Whether `diffuse` may stand for the diffuse terms of all lights that are `summed`: the sum of
   // E_l (n.l) of those that the facing side sees, within the relative error of the request.
   bool has_diffuse = false;

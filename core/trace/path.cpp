@@ -1,4 +1,5 @@
 // Radiance along a path: the recursion behind TracerOf::Radiance.
+#include "absl/container/inlined_vector.h"
 #include "core/math/check.h"
 #include "core/trace/shade.h"
 #include "core/trace/tracer.h"
@@ -34,6 +35,9 @@ struct Transmission {
   bool leaves_denser_medium = false;
   std::optional<Vec3<S>> direction;  // nothing: total internal reflection
 };
+
+// More candidates of one light than this cost an allocation.
+constexpr size_t kUsualCandidates = 24;
 
 // kRecorded: whether `tree` is written. kListed: whether `lights` and `paths` are asked before the
 // scene is searched.
@@ -194,7 +198,7 @@ class PathTracer {
       const S cosine = Dot(hit.normal, view.to_light);
       LightTerm term{LightState::kFacingAway};
       if (cosine > 0) {
-        const auto shadow = ShadowOf(known.lists == nullptr ? LightList{} : known.lists[i],
+        const auto shadow = ShadowOf(known, known.lists == nullptr ? LightList{} : known.lists[i],
                                      hit.point, static_cast<int>(i), start);
         term = shadow.term;
         if (term.state == LightState::kLit) {
@@ -217,14 +221,18 @@ class PathTracer {
   }
 
   using Shadow = typename TracerOf<S>::Shadow;
-  Shadow ShadowOf(const LightList& known, const Vec3<S>& point, int light, const RayStart& start) {
+  Shadow ShadowOf(const KnownLights& cell, const LightList& known, const Vec3<S>& point, int light,
+                  const RayStart& start) {
     ++counts_.shadow;
-    if (known.knowledge == LightKnowledge::kUnknown) {
+    if (!SparesSearch(known.knowledge)) {
       ++counts_.intersect;
       return tracer_.CastShadow(point, light, start);
     }
     ++counts_.listed;
     const bool self_matters = known.knowledge == LightKnowledge::kOn && start.side == Side::kInside;
+    if (known.knowledge == LightKnowledge::kListed && cell.shadows != nullptr) {
+      return ListedShadow(cell, known.candidates, point, light, start);
+    }
     if (known.knowledge == LightKnowledge::kListed || self_matters) {
       return tracer_.CastShadowAmong(known.candidates, point, light, start);
     }
@@ -236,6 +244,25 @@ class PathTracer {
     shadow.term.state = LightState::kLit;
     shadow.filter = {S(1), S(1), S(1)};
     return shadow;
+  }
+
+  // Asks the candidates' shadow functions first, and the candidates themselves where these are in
+  // doubt.
+  Shadow ListedShadow(const KnownLights& cell, std::span<const int32_t> candidates,
+                      const Vec3<S>& point, int light, const RayStart& start) const {
+    const auto first = candidates.data() - cell.shadows->objects;
+    absl::InlinedVector<int32_t, kUsualCandidates> doubtful;
+    for (size_t i = 0; i < candidates.size(); ++i) {
+      const ShadowFunction& function = cell.shadows->functions[static_cast<size_t>(first) + i];
+      const Shadowing shadowing = ShadowingAt(function, cell.shadows->coefficients, cell.s, cell.t);
+      if (shadowing == Shadowing::kBlocks) {
+        Shadow shadow;
+        shadow.term = {LightState::kBlocked, candidates[i]};
+        return shadow;
+      }
+      if (shadowing == Shadowing::kUnknown) doubtful.push_back(candidates[i]);
+    }
+    return tracer_.CastShadowAmong(doubtful, point, light, start);
   }
 
   const Shape& ShapeOf(int object) const {

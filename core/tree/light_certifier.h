@@ -7,8 +7,15 @@
 // above the tracer's rounding, is met by none of them. The points from which a convex object K
 // hides L are L + s (K - L), s >= 1, a convex set; if it holds the eight points of H, it holds all
 // of H. Directional lights are the limit: conv(H) + half line.
+//
+// Contacts. An object that lies behind a plane, with the light in front of it, hides nothing from
+// points in front of the plane, in the tracer's arithmetic too: on their way to the light they move
+// away from it, so that the plane's own crossing comes at t < 0 or t > 1 and bounds all others.
+// Where a wall stands on the floor, its plane cuts the floor's cells only along their side; they
+// are certified for the points that are in front of it by more than rounding.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -18,9 +25,19 @@
 #include "core/trace/tracer.h"
 #include "core/tree/candidate_search.h"
 #include "core/tree/diffuse_sum.h"
+#include "core/tree/face_planes.h"
+#include "core/tree/shadow_builder.h"
 #include "core/tree/surface_chart.h"
 
 namespace linetree {
+
+// A plane that the piece lies in front of, all but a sliver.
+struct Contact {
+  Plane plane;
+  double clearance;  // world length
+};
+// A cell in the corner of a room touches three walls; more contacts are not kept.
+inline constexpr size_t kMaxContacts = 4;
 
 // The lights as seen from one piece of surface. Movable, not copyable: lists point into `objects`.
 struct CellLights {
@@ -29,50 +46,85 @@ struct CellLights {
   CellLights& operator=(CellLights&&) = default;
 
   std::vector<LightList> lights;
+  // Nothing here is said about points that are not in front of all of these by their clearance.
+  std::vector<Contact> contacts;
   std::vector<int32_t> objects;  // the candidates of all lights, one after the other
+  // Of planar pieces: as many functions as objects, or none at all. `shadows` points into all
+  // three.
+  std::vector<ShadowFunction> functions;
+  std::vector<float> coefficients;
+  CellShadows shadows;
   // The diffuse light of those that are `summed`, on the outside or the side that a planar shape's
   // normal points to, and on its other side. Null: evaluate them one by one.
   std::array<std::unique_ptr<const DiffuseSum>, 2> sums;
 
   uint64_t HeapBytes() const {
-    uint64_t bytes = lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t);
+    uint64_t bytes = lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t) +
+                     contacts.capacity() * sizeof(Contact) +
+                     functions.capacity() * sizeof(ShadowFunction) +
+                     coefficients.capacity() * sizeof(float);
     for (const auto& sum : sums) bytes += sum ? sizeof(DiffuseSum) : 0;
     return bytes;
   }
-  // Whether a smaller piece could know more.
-  bool IsDecided() const;
+  bool HasFunctions() const { return !functions.empty(); }
+  bool is_decided = false;  // no smaller piece could know more
+  bool IsDecided() const { return is_decided; }
+  // Whether what is said holds at a point of the piece.
+  bool HoldAt(const Vec3d& point) const {
+    return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+      return SignedDistance(contact.plane, point) > contact.clearance;
+    });
+  }
 };
 
 class LightCertifier {
  public:
-  // Keeps a reference to the tracer, which must outlive it.
-  explicit LightCertifier(const Tracer& tracer);
+  // Keeps a reference to the tracer, which must outlive it. Without `uses_functions` planar cells
+  // are treated like curved ones, to compare with.
+  explicit LightCertifier(const Tracer& tracer, bool uses_functions = true);
 
   // Which it searches occluders with.
   const CandidateSearch& search() const { return search_; }
 
-  // Knowledge about a piece of the given object. With `parent`, what is known of a larger piece
-  // that contains it, only that one's candidates are looked at.
-  CellLights Certify(int object, const PatchHull& hull, const CellLights* parent) const;
+  // Knowledge about a cell of the given object's chart. With `parent`, what is known of a larger
+  // cell that contains it, only that one's candidates are looked at.
+  CellLights Certify(int object, const SurfaceChart& chart, int patch, const SurfaceCell& cell,
+                     const CellLights* parent) const;
 
   // The same for one light without a parent, and without the candidates.
   LightKnowledge KnowledgeOf(int object, const PatchHull& hull, int light) const;
 
  private:
   struct Bundle;
+  struct Findings;
 
-  // What may block, as Candidates gives it, decides.
-  LightKnowledge Decide(const Bundle& bundle, const std::vector<int32_t>& kept,
-                        int32_t& occluder) const;
-  std::vector<int32_t> Candidates(const Bundle& bundle, const LightList& inherited) const;
-  bool MayBlock(const Bundle& bundle, int object) const;
+  // One light of findings.cell.
+  void CertifyLight(const Bundle& bundle, const LightList& inherited, Findings& findings) const;
+  // What may block, as FindCandidates left it, decides.
+  LightKnowledge Decide(const Bundle& bundle, Findings& findings) const;
+  void FindCandidates(const Bundle& bundle, const LightList& inherited, Findings& findings) const;
+  bool KeepsMeeting(const Bundle& bundle, size_t index, Findings& findings) const;
+  bool MayBlock(const Bundle& bundle, int object, Findings& findings) const;
+  // Whether the object lies behind a plane that the light and the hull are in front of, but for
+  // contacts.
+  bool LiesBehind(const Bundle& bundle, int object, Findings& findings) const;
+  // What the object's shadow function says, which is built if there is one.
+  CellShadow ShadowOf(const Bundle& bundle, int object, Findings& findings) const;
+  // `begins`: where the candidates of each light begin.
+  static void Finish(const std::vector<size_t>& begins, CellLights& cell);
+  // World length.
+  double ClearanceTo(const Bundle& bundle, int object) const;
   // Whether the object hides the light from every point of the hull.
   bool HidesAll(const Bundle& bundle, int object) const;
 
   const Tracer& tracer_;
   const Scene& scene_;
   Box3 world_;
+  const bool uses_functions_;
   CandidateSearch search_;
+  // By object:
+  std::vector<FacePlanes> planes_;
+  std::vector<double> clearances_;  // world length, for rounding of distances from it
 };
 
 }  // namespace linetree

@@ -83,15 +83,15 @@ struct SurfaceChart::Builder {
     if (s.open) return;
     const Mat3& m = s.frame.world_from_object;
     const Vec3d x = Column(m, 0), y = Column(m, 1), top = s.frame.center + Column(m, 2);
-    chart.planes_.push_back(MakePlane(s.frame.center, x, y, s.base_radius));
-    chart.planes_.push_back(MakePlane(top, x, y, s.top_radius));
+    chart.planes_.push_back(MakeSide(top, s.frame.center, x, y, s.base_radius));
+    chart.planes_.push_back(MakeSide(s.frame.center, top, x, y, s.top_radius));
   }
   void operator()(const BoxShape& s) const {
     for (int face = 0; face < 6; ++face) {
       const int k = face / 2;
       const auto column = [&](int i) { return Column(s.frame.world_from_object, i % 3); };
       const Vec3d center = s.frame.center + column(k) * (face % 2 == 0 ? -1.0 : 1.0);
-      chart.planes_.push_back(MakePlane(center, column(k + 1), column(k + 2), 1));
+      chart.planes_.push_back(MakeSide(s.frame.center, center, column(k + 1), column(k + 2), 1));
     }
   }
   void operator()(const DiscShape& s) const {
@@ -150,6 +150,13 @@ SurfaceChart::PlanePatch SurfaceChart::MakePlane(const Vec3d& center, const Vec3
   plane.gx = x * (1 / (Dot(x, ux) * lx));
   plane.gy = y * (1 / (Dot(y, uy) * ly));
   return plane;
+}
+
+SurfaceChart::PlanePatch SurfaceChart::MakeSide(const Vec3d& inside, const Vec3d& center,
+                                                const Vec3d& ex, const Vec3d& ey, double half) {
+  PlanePatch side = MakePlane(center, ex, ey, half);
+  if (Dot(inside - center, side.normal) > 0) side.normal = -side.normal;
+  return side;
 }
 
 SurfaceChart::PlanePatch SurfaceChart::MakeRectangle(const Plane& plane, const Vec3d& along,
@@ -243,16 +250,42 @@ std::optional<SurfaceChart::PlanarCell> SurfaceChart::PlanarCellOf(int patch,
   const Range u = RangeOf(cell.i, cell.depth), v = RangeOf(cell.j, cell.depth);
   const Vec3d ex = plane.ex * plane.hx, ey = plane.ey * plane.hy;
   return PlanarCell{plane.center + ex * (2 * u.low - 1) + ey * (2 * v.low - 1),
-                    ex * (2 * (u.high - u.low)), ey * (2 * (v.high - v.low)), plane.normal};
+                    ex * (2 * (u.high - u.low)), ey * (2 * (v.high - v.low)), plane.normal,
+                    PadOf(plane)};
+}
+
+// On a curved patch a point p of the surface sees L in front of its tangent plane when the
+// quadric's polar form B(p, L) > 0, where B(p, p) is what vanishes on the surface. It is linear in
+// p, so the corners of the hull bound it.
+bool SurfaceChart::FacesAway(int patch, const PatchHull& hull, const Light& light) const {
+  if (is_thin_) return false;
+  const bool is_point = light.kind == LightKind::kPoint;
+  if (patch >= curved_patches_) {
+    const PlanePatch& plane = planes_.at(static_cast<size_t>(patch - curved_patches_));
+    return Dot(is_point ? light.position - plane.center : light.to_light, plane.normal) < 0;
+  }
+  const double weight = is_point ? 1 : 0;
+  const Vec3d l =
+      frame_.object_from_world * (is_point ? light.position - frame_.center : light.to_light);
+  return std::all_of(hull.points.begin(), hull.points.end(), [&](const Vec3d& x) {
+    const Vec3d p = frame_.object_from_world * (x - frame_.center);
+    if (curved_ == Curved::kSphere) return Dot(p, l) - weight < 0;
+    const double w = base_radius_ + taper_ * p.z;
+    return p.x * l.x + p.y * l.y - w * (weight * base_radius_ + taper_ * l.z) < 0;
+  });
+}
+
+double SurfaceChart::PadOf(const PlanePatch& plane) const {
+  const double condition =
+      Length(plane.gx) * Length(plane.ex) + Length(plane.gy) * Length(plane.ey);
+  return slack_ * (1 + kPadMargin) + kChartRounding * condition * reach_;
 }
 
 // The cell's parallelogram with a ball of radius `pad` added: a displacement d of at most pad is
 // X ex + Y ey + h normal with X = gx.d, |X| <= pad |gx|, Y likewise, and |h| <= pad. So the prism
 // over the parallelogram with sides longer by that much contains the sum.
 PatchHull SurfaceChart::PlaneHull(const PlanePatch& plane, const SurfaceCell& cell) const {
-  const double condition =
-      Length(plane.gx) * Length(plane.ex) + Length(plane.gy) * Length(plane.ey);
-  const double pad = slack_ * (1 + kPadMargin) + kChartRounding * condition * reach_;
+  const double pad = PadOf(plane);
   const Range u = RangeOf(cell.i, cell.depth), v = RangeOf(cell.j, cell.depth);
   const double px = pad * Length(plane.gx), py = pad * Length(plane.gy);
   const double x[2] = {(2 * u.low - 1) * plane.hx - px, (2 * u.high - 1) * plane.hx + px};

@@ -105,9 +105,16 @@ class SurfaceChart {
   // curved patches.
   struct PlanarCell {
     Vec3d corner, eu, ev;
-    Vec3d normal;  // unit; either way for solids
+    Vec3d normal;  // unit; outwards on solids and frustums
+    // World length: every point that is on the surface (IsOn) and in the cell is this close to
+    // the point with the same s and t.
+    double pad;
   };
   std::optional<PlanarCell> PlanarCellOf(int patch, const SurfaceCell& cell) const;
+
+  // Whether the outside of a solid or frustum faces away from the light all over the hull of a cell
+  // of the patch, up to rounding. Never for planar shapes, which have two outsides.
+  bool FacesAway(int patch, const PatchHull& hull, const Light& light) const;
 
   // Whether a facing normal belongs to the side of a planar shape that its own normal does not
   // point to. Solids and frustums are seen from outside.
@@ -128,12 +135,15 @@ class SurfaceChart {
     Vec3d center;
     Vec3d ex, ey;
     Vec3d gx, gy;  // dual to ex, ey in the plane: X = gx.(x - center)
-    Vec3d normal;  // unit
+    Vec3d normal;  // unit; outwards unless the whole shape is planar
     double hx = 1, hy = 1;
   };
   struct Builder;
 
   static PlanePatch MakePlane(const Vec3d& center, const Vec3d& ex, const Vec3d& ey, double half);
+  // The side of a solid that has `inside` behind it.
+  static PlanePatch MakeSide(const Vec3d& inside, const Vec3d& center, const Vec3d& ex,
+                             const Vec3d& ey, double half);
   static PlanePatch MakeRectangle(const Plane& plane, const Vec3d& along,
                                   const std::vector<Vec3d>& vertices, double margin);
   // Takes over a curved shape's frame and the bound on rounding that goes with it.
@@ -141,6 +151,7 @@ class SurfaceChart {
 
   SurfacePoint LocateOnSphere(const Vec3d& point) const;
   SurfacePoint LocateOnLateral(const Vec3d& point) const;
+  double PadOf(const PlanePatch& plane) const;
   PatchHull PlaneHull(const PlanePatch& plane, const SurfaceCell& cell) const;
   PatchHull SphereHull(int patch, const SurfaceCell& cell) const;
   PatchHull LateralHull(int patch, const SurfaceCell& cell) const;

@@ -16,22 +16,28 @@ KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) cons
   const SurfacePoint point = chart_.Locate(hit.face, hit.point);
   const SurfaceNode& node = cells_.Find(point.patch, CellAt(point, kMaxSurfaceDepth), now);
   node.uses.fetch_add(1, std::memory_order_relaxed);
-  if (!node.payload) return known;
+  if (!node.payload || !node.payload->HoldAt(hit.point)) return known;
   known.lists = node.payload->lights.data();
-  if (epsilon > 0) AddDiffuse(hit, point, node, epsilon, known);
+  const double scale = std::ldexp(1.0, node.cell.depth);
+  const double s = std::clamp(point.u * scale - node.cell.i, 0.0, 1.0);
+  const double t = std::clamp(point.v * scale - node.cell.j, 0.0, 1.0);
+  if (node.payload->HasFunctions()) {
+    known.shadows = &node.payload->shadows;
+    known.s = static_cast<float>(s);
+    known.t = static_cast<float>(t);
+  }
+  if (epsilon > 0) AddDiffuse(hit, s, t, node, epsilon, known);
   return known;
 }
 
-void SurfaceTree::AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
+void SurfaceTree::AddDiffuse(const Hit& hit, double s, double t, const SurfaceNode& node,
                              double epsilon, KnownLights& known) const {
   const auto& sums = node.payload->sums;
   if (!sums[0] && !sums[1]) return;
   const auto side = SideOf(hit);
   if (!side || !sums[*side] || !(sums[*side]->spread <= epsilon)) return;
-  const double scale = std::ldexp(1.0, node.cell.depth);
   known.has_diffuse = true;
-  known.diffuse = sums[*side]->At(std::clamp(point.u * scale - node.cell.i, 0.0, 1.0),
-                                  std::clamp(point.v * scale - node.cell.j, 0.0, 1.0));
+  known.diffuse = sums[*side]->At(s, t);
 }
 
 std::optional<size_t> SurfaceTree::SideOf(const Hit& hit) const {

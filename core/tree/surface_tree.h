@@ -35,8 +35,9 @@ class SurfaceTree {
   uint64_t CountBytes() const;
 
  private:
-  void AddDiffuse(const Hit& hit, const SurfacePoint& point, const SurfaceNode& node,
-                  double epsilon, KnownLights& known) const;
+  // (s, t): the hit's coordinates in the cell.
+  void AddDiffuse(const Hit& hit, double s, double t, const SurfaceNode& node, double epsilon,
+                  KnownLights& known) const;
 
   // Which of the sums holds at a hit; nothing for inner sides, and where a grazing ray's normal has
   // been turned inwards by rounding.

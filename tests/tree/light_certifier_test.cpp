@@ -26,7 +26,7 @@ class LightCertifierTest : public testing::Test {
     const Tracer tracer(scene_);
     const SurfaceChart chart(scene_.objects[0]);
     const SurfacePoint at = chart.Locate(0, {x, y, 0});
-    cell_ = LightCertifier(tracer).Certify(0, chart.HullOf(at.patch, CellAt(at, depth)), nullptr);
+    cell_ = LightCertifier(tracer).Certify(0, chart, at.patch, CellAt(at, depth), nullptr);
     return cell_.lights[0].knowledge;
   }
 
@@ -77,12 +77,12 @@ TEST_F(LightCertifierTest, ChildrenLookAtTheirParentsCandidatesOnly) {
   const Tracer tracer(scene_);
   const LightCertifier certifier(tracer);
   const SurfaceChart chart(scene_.objects[0]);
-  const CellLights root = certifier.Certify(0, chart.HullOf(0, {}), nullptr);
+  const CellLights root = certifier.Certify(0, chart, 0, {}, nullptr);
   ASSERT_EQ(root.lights[0].candidates.size(), 5u);
   for (int c = 0; c < 4; ++c) {
-    const PatchHull hull = chart.HullOf(0, SurfaceCell{}.Child(c));
-    const CellLights filtered = certifier.Certify(0, hull, &root);
-    const CellLights afresh = certifier.Certify(0, hull, nullptr);
+    const SurfaceCell cell = SurfaceCell{}.Child(c);
+    const CellLights filtered = certifier.Certify(0, chart, 0, cell, &root);
+    const CellLights afresh = certifier.Certify(0, chart, 0, cell, nullptr);
     ASSERT_EQ(filtered.objects, afresh.objects);
     EXPECT_LT(filtered.objects.size(), 5u);
   }
@@ -91,6 +91,72 @@ TEST_F(LightCertifierTest, ChildrenLookAtTheirParentsCandidatesOnly) {
 TEST_F(LightCertifierTest, LongListsAreLeftToTheHierarchy) {
   for (int i = 0; i < 30; ++i) Add(test::Sphere({0.01 * i, 0, 3 + 0.1 * i}, 0.04));
   EXPECT_EQ(Knowledge(0, 0, 0), LightKnowledge::kUnknown);
+}
+
+// A wall along the cell's side leaves it lit but for points at its foot.
+TEST_F(LightCertifierTest, AWallThatTheCellEndsAtIsAContact) {
+  Add(test::Polygon({{-4, -4, 0}, {-4, 4, 0}, {-4, 4, 5}, {-4, -4, 5}}));
+  EXPECT_EQ(Knowledge(-3.9, 1.1, 3), LightKnowledge::kOn);
+  ASSERT_EQ(cell_.contacts.size(), 1u);
+  EXPECT_LT(cell_.contacts[0].clearance, 1e-6);
+  EXPECT_TRUE(cell_.HoldAt({-3.999, 1.1, 0}));
+  EXPECT_FALSE(cell_.HoldAt({-4, 1.1, 0}));
+  EXPECT_EQ(Knowledge(-2.9, 1.1, 3), LightKnowledge::kOn);
+  EXPECT_TRUE(cell_.contacts.empty());
+}
+
+TEST_F(LightCertifierTest, AWallInTheMiddleOfACellIsNone) {
+  Add(test::Polygon({{-3.75, -4, 0}, {-3.75, 4, 0}, {-3.75, 4, 5}, {-3.75, -4, 5}}));
+  EXPECT_EQ(Knowledge(-3.9, 1.1, 3), LightKnowledge::kListed);
+  EXPECT_TRUE(cell_.contacts.empty());
+}
+
+TEST_F(LightCertifierTest, BacksOfOpaqueSolidsAreNotLookedAt) {
+  scene_.objects[0] = ObjectOf(test::Box({-4, -4, -1}, {4, 4, 0}));
+  Add(test::Sphere({0, 0, 3}, 1));
+  const Tracer tracer(scene_);
+  const SurfaceChart chart(scene_.objects[0]);
+  const LightCertifier certifier(tracer);
+  for (int face = 0; face < 5; ++face) {
+    EXPECT_EQ(certifier.Certify(0, chart, face, {}, nullptr).lights[0].knowledge,
+              LightKnowledge::kFacingAway);
+  }
+  EXPECT_EQ(certifier.Certify(0, chart, 5, {}, nullptr).lights[0].knowledge,
+            LightKnowledge::kListed);
+}
+
+TEST_F(LightCertifierTest, DividedFunctionsSayWhatNewOnesSay) {
+  Add(test::Sphere({0, 0, 3}, 1));
+  Add(test::Box({-2, 1, 1}, {-1, 2, 2}));
+  Add(test::Frustum({2, -2, 1}, {2.5, -2, 2}, 0.4, 0.3));
+  const Tracer tracer(scene_);
+  const LightCertifier certifier(tracer), plain(tracer, false);
+  const SurfaceChart chart(scene_.objects[0]);
+  const CellLights root = certifier.Certify(0, chart, 0, {}, nullptr);
+  ASSERT_TRUE(root.HasFunctions());
+  EXPECT_FALSE(plain.Certify(0, chart, 0, {}, nullptr).HasFunctions());
+  int points = 0, known = 0;
+  for (int c = 0; c < 4; ++c) {
+    const CellLights cell = certifier.Certify(0, chart, 0, SurfaceCell{}.Child(c), &root);
+    for (size_t i = 0; i < cell.functions.size(); ++i) {
+      const auto at = std::find(root.objects.begin(), root.objects.end(), cell.objects[i]);
+      const auto& old = root.functions[static_cast<size_t>(at - root.objects.begin())];
+      if (old.pieces == 0) continue;  // the ball's is built anew: the whole floor is too large
+      for (int k = 0; k < 1000; ++k, ++points) {
+        const float s = static_cast<float>(k % 37) / 37, t = static_cast<float>(k % 41) / 41;
+        const Shadowing now = ShadowingAt(cell.functions[i], cell.coefficients.data(), s, t);
+        const Shadowing then =
+            ShadowingAt(old, root.coefficients.data(), (s + static_cast<float>(c & 1)) / 2,
+                        (t + static_cast<float>(c >> 1)) / 2);
+        known += now != Shadowing::kUnknown && then != Shadowing::kUnknown ? 1 : 0;
+        if (now != then) {
+          EXPECT_TRUE(now == Shadowing::kUnknown || then == Shadowing::kUnknown);
+        }
+      }
+    }
+  }
+  EXPECT_GE(points, 3000);
+  EXPECT_GT(known, points * 99 / 100);
 }
 
 TEST_F(LightCertifierTest, TouchingObjectsStayCandidates) {
