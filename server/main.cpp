@@ -14,6 +14,7 @@ struct Flags {
   std::vector<std::string> scenes;
   std::string log_level = "info";
   std::string judge = "certified";
+  std::string lanes = "scalar";
   int64_t drain_timeout_ms = 0;
 };
 
@@ -34,6 +35,10 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
       ->capture_default_str();
   app.add_option("--judge", flags.judge, "judge of requests that name none")
       ->check(CLI::IsMember({"paper", "certified"}))
+      ->capture_default_str();
+  app.add_option("--lanes", flags.lanes,
+                 "how frames are traced for requests that do not say: scalar, or simd")
+      ->check(CLI::IsMember({"scalar", "simd"}))
       ->capture_default_str();
   app.add_option("--max-depth", options.defaults.limits.max_depth,
                  "rays on a path, the eye ray counted")
@@ -63,6 +68,7 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
     options.scenes.push_back(*std::move(scene));
   }
   options.defaults.judge = flags.judge == "certified" ? JudgeKind::kCertified : JudgeKind::kPaper;
+  options.defaults.lanes = flags.lanes == "simd" ? Lanes::kSimd : Lanes::kScalar;
   options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
   return ValidateServerOptions(options);
 }

@@ -139,6 +139,17 @@ void AddJudgeFlag(CLI::App& app, JudgeKind& judge) {
       ->group("Rendering");
 }
 
+void AddLanesFlag(CLI::App& app, Lanes& lanes) {
+  const std::map<std::string, Lanes> all = {{"simd", Lanes::kSimd}, {"scalar", Lanes::kScalar}};
+  app.add_option("--lanes", lanes,
+                 "How frames are traced. scalar: one by one, in double;\n"
+                 "simd: sixteen rays at a time, radiance in float, many times as fast")
+      ->transform(CLI::CheckedTransformer(all))
+      ->type_name("LANES")
+      ->default_str("scalar")
+      ->group("Rendering");
+}
+
 void AddLimitsFlags(CLI::App& app, PathLimits& limits) {
   app.add_option("--max-depth", limits.max_depth, "Rays on a path, the eye ray counted")
       ->type_name("N")
@@ -169,6 +180,7 @@ void AddOptionsFlags(CLI::App& app, RenderOptions& options) {
       ->capture_default_str()
       ->group("Rendering");
   AddLimitsFlags(app, options.limits);
+  AddLanesFlag(app, options.lanes);
 }
 
 void AddStatsFlag(CLI::App& app, std::string& stats) {

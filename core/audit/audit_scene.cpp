@@ -19,7 +19,7 @@ constexpr double kFrameShare = 0.4;
 constexpr double kLatticeShare = 0.15;
 constexpr double kClimbShare = 0.15;
 constexpr size_t kMaxViews = 2;
-constexpr int kFramesPerView = 2;  // cold, warm
+constexpr int kFramesPerView = 4;  // cold and warm, by packets and then ray by ray
 constexpr int kMinSide = 16, kMaxSide = 512;
 // Every climber takes so many steps, longer ones after success, shorter ones after failure, and any
 // from the shortest to the longest where nothing changes. Relative to the scene's size.
@@ -47,7 +47,17 @@ struct Answers {
   std::vector<Source> source;
   FrameStats stats;
   bool rounded = false;
+  double lane_rounding = 0;  // Frame::lane_rounding
+  // The classical frame that was traced the same way, where that is not in double.
+  std::vector<float> same_lanes;
 };
+
+// What surface trees say is to be audited, not whether it pays to ask them.
+CacheOptions CacheOf(const SceneAuditRequest& request) {
+  CacheOptions options = request.cache;
+  options.always_ask = true;
+  return options;
+}
 
 class Auditor {
  public:
@@ -56,7 +66,7 @@ class Auditor {
         answerer_(answerer),
         pool_(pool),
         random_(request.seed),
-        host_(request.scene, request.cache),
+        host_(request.scene, CacheOf(request)),
         views_(request.scene->cameras.begin(),
                request.scene->cameras.begin() +
                    static_cast<std::ptrdiff_t>(std::min(kMaxViews, request.scene->cameras.size()))),
@@ -69,7 +79,8 @@ class Auditor {
 
  private:
   absl::Status AskFrames();
-  absl::Status AskFrame(const Camera& camera, size_t epsilon, const Questions& questions, int side);
+  absl::Status AskFrame(const Camera& camera, size_t epsilon, const Questions& questions, int side,
+                        Lanes lanes);
   absl::Status AskRays(QueryKind kind, size_t count);
   absl::Status Climb(size_t epsilon, size_t count);
 
@@ -145,8 +156,16 @@ std::vector<double> Auditor::Judge(QueryKind kind, size_t epsilon, const Questio
   const double allowed = request_.epsilons[epsilon];
   ForChunks(pool_, count, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const auto compare = answers.rounded ? CompareRounded : Compare;
-      results[i] = compare(answers.radiance[i], questions.classical[i], allowed, floor_);
+      const Rgb &answer = answers.radiance[i], &classical = questions.classical[i];
+      results[i] = answers.rounded
+                       ? CompareRounded(answer, classical, allowed, floor_, answers.lane_rounding)
+                       : Compare(answer, classical, allowed, floor_);
+      if (answers.same_lanes.empty()) continue;
+      const float* same = &answers.same_lanes[3 * i];
+      results[i].equal = answer.r == static_cast<double>(same[0]) &&
+                         answer.g == static_cast<double>(same[1]) &&
+                         answer.b == static_cast<double>(same[2]);
+      if (allowed == 0 && !results[i].equal) results[i].error_over_allowed = Box3::kInf;
     }
   });
   AuditTally tally;
@@ -184,20 +203,28 @@ void Auditor::Keep(size_t epsilon, const Ray& ray, const Rgb& classical, const R
 }
 
 absl::Status Auditor::AskFrame(const Camera& camera, size_t epsilon, const Questions& questions,
-                               int side) {
+                               int side, Lanes lanes) {
   FrameRequest request;
   request.camera = camera;
   request.width = request.height = side;
   request.options = OptionsOf(epsilon);
+  request.options.lanes = lanes;
   const auto frame = answerer_.RenderFrame(host_, request, pool_);
   if (!frame.ok()) return frame.status();
   Answers answers;
   answers.rounded = true;
+  answers.lane_rounding = frame->lane_rounding;
   answers.stats = frame->stats;
   answers.source = frame->source;
   for (size_t i = 0; i < questions.rays.size(); ++i) {
     answers.radiance.push_back(
         {frame->radiance[3 * i], frame->radiance[3 * i + 1], frame->radiance[3 * i + 2]});
+  }
+  if (frame->lane_rounding > 0) {
+    request.options.mode = Mode::kClassical;
+    auto classical = host_.RenderFrame(request, pool_);
+    if (!classical.ok()) return classical.status();
+    answers.same_lanes = std::move(classical->radiance);
   }
   Judge(QueryKind::kFrame, epsilon, questions, answers);
   return absl::OkStatus();
@@ -214,7 +241,8 @@ absl::Status Auditor::AskFrames() {
     for (int i = 0; i < side * side; ++i) rays.push_back(eye_rays.ThroughPixel(i % side, i / side));
     const Questions questions = Trace(std::move(rays), /*eye_rays=*/true);
     for (int repeat = 0; repeat < kFramesPerView; ++repeat) {
-      if (auto s = AskFrame(camera, epsilon, questions, side); !s.ok()) return s;
+      const Lanes lanes = repeat < kFramesPerView / 2 ? Lanes::kSimd : Lanes::kScalar;
+      if (auto s = AskFrame(camera, epsilon, questions, side, lanes); !s.ok()) return s;
       epsilon = (epsilon + 1) % request_.epsilons.size();
     }
   }

@@ -54,10 +54,12 @@ Comparison Compare(const Rgb& answer, const Rgb& classical, double epsilon, doub
   });
 }
 
-Comparison CompareRounded(const Rgb& answer, const Rgb& classical, double epsilon, double floor) {
+Comparison CompareRounded(const Rgb& answer, const Rgb& classical, double epsilon, double floor,
+                          double lane_rounding) {
+  const double allowed = epsilon + lane_rounding;
   const auto same = [](double a, double c) { return SameBits(a, AsFloat(c)); };
   return CompareChannels(answer, classical, same, [&](double a, double c) {
-    return epsilon == 0 ? kInf : RatioRounded(a, c, epsilon, floor);
+    return allowed == 0 ? kInf : RatioRounded(a, c, allowed, floor);
   });
 }
 

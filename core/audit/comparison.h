@@ -23,7 +23,9 @@ struct Comparison {
 Comparison Compare(const Rgb& answer, const Rgb& classical, double epsilon, double floor);
 
 // The same for an answer that was rounded to float, given as the doubles of those floats; equal
-// means equal to the rounded classical radiance.
-Comparison CompareRounded(const Rgb& answer, const Rgb& classical, double epsilon, double floor);
+// means equal to the rounded classical radiance. What arithmetic in float may add to epsilon is
+// allowed too (Frame::lane_rounding).
+Comparison CompareRounded(const Rgb& answer, const Rgb& classical, double epsilon, double floor,
+                          double lane_rounding = 0);
 
 }  // namespace linetree

@@ -16,6 +16,7 @@ FrameRequest RequestFor(const Camera& camera, const FrameStudyOptions& options, 
   request.options.mode = mode;
   request.options.judge = JudgeKind::kCertified;
   request.options.max_relative_error = epsilon;
+  request.options.lanes = options.lanes;
   return request;
 }
 

@@ -15,6 +15,7 @@ struct FrameStudyOptions {
   int side = 512;
   int frames = 30;
   std::vector<double> epsilons = {0, 0.02, 0.1, 0.25};
+  Lanes lanes = Lanes::kScalar;
 };
 
 // All frames of one path at one epsilon, on one cache that starts empty.

@@ -81,11 +81,13 @@ void LiveAudit::Offer(const LiveScene& scene, const std::vector<Ray>& rays,
 void LiveAudit::Offer(const LiveScene& scene, const RenderOptions& options, const Frame& frame) {
   const EyeRays eye_rays(frame.camera, frame.width, frame.height);
   const auto width = static_cast<size_t>(frame.width);
-  OfferSamples({scene, options, /*from_frame=*/true}, frame.source.size(), [&](size_t i) {
-    const Ray ray = eye_rays.ThroughPixel(static_cast<int>(i % width), static_cast<int>(i / width));
-    const float* radiance = &frame.radiance[3 * i];
-    return Sample{nullptr, ray, {radiance[0], radiance[1], radiance[2]}};
-  });
+  OfferSamples({scene, options, /*from_frame=*/true, frame.lane_rounding}, frame.source.size(),
+               [&](size_t i) {
+                 const Ray ray = eye_rays.ThroughPixel(static_cast<int>(i % width),
+                                                       static_cast<int>(i / width));
+                 const float* radiance = &frame.radiance[3 * i];
+                 return Sample{nullptr, ray, {radiance[0], radiance[1], radiance[2]}};
+               });
 }
 
 void LiveAudit::Run() {
@@ -108,9 +110,10 @@ void LiveAudit::Check(const Sample& sample) {
   RayCounts none;
   const Rgb classical = request.scene.host->tracer().Radiance(ray.origin, ray.direction,
                                                               request.options.limits, none);
-  const auto compare = request.from_frame ? CompareRounded : Compare;
-  const Comparison result =
-      compare(sample.answer, classical, request.options.max_relative_error, RadianceFloor(scene));
+  const double epsilon = request.options.max_relative_error, floor = RadianceFloor(scene);
+  const Comparison result = request.from_frame ? CompareRounded(sample.answer, classical, epsilon,
+                                                                floor, request.lane_rounding)
+                                               : Compare(sample.answer, classical, epsilon, floor);
   AuditCounts& counts = *request.scene.counts;
   if (result.error_over_allowed > counts.max_error_over_allowed_.load(std::memory_order_relaxed)) {
     counts.max_error_over_allowed_.store(result.error_over_allowed, std::memory_order_relaxed);

@@ -82,6 +82,7 @@ class LiveAudit {
     LiveScene scene;
     RenderOptions options;
     bool from_frame = false;
+    double lane_rounding = 0;  // Frame::lane_rounding
   };
   struct Sample {
     std::shared_ptr<const Request> request;

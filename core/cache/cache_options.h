@@ -15,6 +15,9 @@ struct CacheOptions {
   // A cell is built only for at least this many rays of one batch. A cell costs up to sixteen
   // corner samples, of which neighbours share most.
   uint32_t min_cell_rays = 8;
+  // Frames by packets ask the surface trees everywhere and let them grow, also where that does not
+  // pay: for tests and audits of what the trees say.
+  bool always_ask = false;
 };
 
 // Shares of the memory that the surface trees and the certified linetrees get; the linetrees of the

@@ -219,7 +219,7 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
     if (memory_bytes_ == 0) return 0;
     forest = &OpenForest(limits);
     forest->last_used = clock_;
-    forest->store.PlantWanted(BudgetOf(*forest));
+    forest->store.PlantWanted(BudgetOf(*forest), [](size_t) { return true; });
     groups = GroupByLeaf(*forest, samples);
   }
   const double rays = static_cast<double>(samples.size()) * weight;

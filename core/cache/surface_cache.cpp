@@ -1,5 +1,7 @@
 #include "core/cache/surface_cache.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace linetree {
@@ -8,7 +10,8 @@ namespace linetree {
 struct SurfaceCache::Work {
   SurfaceNode* node = nullptr;
   size_t object = 0;
-  double points = 0;  // shading points expected in it
+  double points = 0;        // shading points expected in it
+  double least_points = 0;  // Thrift's
   const CellLights* parent = nullptr;
   std::unique_ptr<const CellLights> lights{};  // the result
 };
@@ -32,25 +35,41 @@ KnownLights SurfaceCache::Reader::Find(const Hit& hit) const {
   return {};
 }
 
-std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight) {
+const SurfaceTree* SurfaceCache::Reader::TreeOf(size_t object) const {
+  const SurfaceTree* tree = cache_.store_.Get(object);
+  if (tree == nullptr) cache_.store_.Want(object);
+  return tree;
+}
+
+std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const Thrift& thrift) {
   std::unique_lock lock(mutex_);
   ++clock_;
   std::vector<Work> works;
   store_.ForEachTree([&](size_t object, SurfaceTree& tree) {
+    const double least = thrift.least_points == nullptr ? 0 : (*thrift.least_points)(object);
+    if (std::isinf(least)) return;
     tree.cells().ForEach([&](SurfaceNode& node) {
       if (!node.IsLeaf()) return;
       const uint32_t uses = node.uses.exchange(0, std::memory_order_relaxed);
-      if (uses == 0 || (node.payload && node.payload->IsDecided())) return;
-      works.push_back({&node, object, uses * weight});
+      if (uses < thrift.least_uses || uses * weight < least) return;
+      if (uses == 0 || (node.payload && !node.payload->WantsSmaller())) return;
+      works.push_back({&node, object, uses * weight, least});
     });
   });
-  store_.PlantWanted(memory_bytes_);
+  store_.PlantWanted(memory_bytes_, [&](size_t object) {
+    return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
+  });
+  if (works.size() > thrift.most_cells) {
+    std::stable_sort(works.begin(), works.end(),
+                     [](const Work& a, const Work& b) { return a.points > b.points; });
+    works.resize(thrift.most_cells);
+  }
   return works;
 }
 
 bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights) const {
-  return work.points >= min_uses_ && work.node->cell.depth < kMaxSurfaceDepth &&
-         !lights.IsDecided();
+  return work.points >= std::max(min_uses_, 2 * work.least_points) &&
+         work.node->cell.depth < kMaxSurfaceDepth && lights.WantsSmaller();
 }
 
 std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
@@ -66,6 +85,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       summer_.AddSums(static_cast<int>(work.object), chart, work.node->root, work.node->cell,
                       *lights);
     }
+    lights->MakeTasks(summer_.scene());
     work.lights = std::move(lights);
   });
   std::vector<Work> next;
@@ -78,16 +98,16 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
     }
     if (!ShouldDivide(work, *node.payload) || !store_.Divide(node, clock_, memory_bytes_)) continue;
     for (SurfaceNode& child : *node.children) {
-      next.push_back({&child, work.object, work.points / 4, node.payload.get()});
+      next.push_back({&child, work.object, work.points / 4, work.least_points, node.payload.get()});
     }
   }
   return next;
 }
 
-uint64_t SurfaceCache::Refine(double weight, const ParallelLoop& loop) {
+uint64_t SurfaceCache::Refine(double weight, const ParallelLoop& loop, const Thrift& thrift) {
   std::lock_guard refining(refine_mutex_);
   const uint64_t before = CellCount();
-  std::vector<Work> works = CollectUsed(weight);
+  std::vector<Work> works = CollectUsed(weight, thrift);
   while (!works.empty()) works = Publish(std::move(works), loop);
   const uint64_t certified = CellCount() - before;
   std::unique_lock lock(mutex_);
@@ -115,6 +135,13 @@ uint64_t SurfaceCache::CountBytes() const {
 uint64_t SurfaceCache::CellCount() const {
   std::shared_lock lock(mutex_);
   return store_.cell_count();
+}
+
+uint64_t SurfaceCache::TreeCount() const {
+  std::shared_lock lock(mutex_);
+  uint64_t count = 0;
+  store_.ForEachTree([&](size_t, const SurfaceTree&) { ++count; });
+  return count;
 }
 
 void SurfaceCache::Clear() {

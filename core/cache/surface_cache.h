@@ -6,6 +6,8 @@
 // outside it and takes it to publish.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <mutex>
 #include <shared_mutex>
 #include <vector>
@@ -38,20 +40,38 @@ class SurfaceCache {
     explicit Reader(const SurfaceCache& cache, double epsilon = 0);
     KnownLights Find(const Hit& hit) const override;
 
+    // The object's tree, for those who look cells up themselves; null where there is none yet,
+    // which counts as asking for one.
+    const SurfaceTree* TreeOf(size_t object) const;
+    uint32_t now() const { return cache_.clock_; }
+    double epsilon() const { return epsilon_; }
+
    private:
     const SurfaceCache& cache_;
     const double epsilon_;
     std::shared_lock<std::shared_mutex> lock_;
   };
 
-  // Divides the cells that were used since the last call where that pays; `weight` is the number of
-  // shading points that one use stands for. Returns how many cells it certified.
-  uint64_t Refine(double weight, const ParallelLoop& loop);
+  // Which of the cells that were used are worth their price.
+  struct Thrift {
+    uint32_t least_uses = 1;  // of a cell that is certified
+    // Shading points of an object's cell that is certified (infinity: none); of one that is
+    // divided, twice as many, and the cache's own least number at least. Null: any.
+    const std::function<double(size_t)>* least_points = nullptr;
+    // Whether an object without a tree may get one. Null: all.
+    const std::function<bool(size_t)>* may_grow = nullptr;
+    size_t most_cells = std::numeric_limits<size_t>::max();  // those that most points ask for
+  };
+  // Certifies and divides the cells that were used since the last call where that pays; `weight` is
+  // the number of shading points that one use stands for. Returns how many cells it certified.
+  uint64_t Refine(double weight, const ParallelLoop& loop, const Thrift& thrift);
+  uint64_t Refine(double weight, const ParallelLoop& loop) { return Refine(weight, loop, {}); }
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
+  uint64_t TreeCount() const;
   void Clear();
 
  private:
@@ -59,7 +79,7 @@ class SurfaceCache {
 
   // Whether smaller cells are worth their cost, with what is known of this one.
   bool ShouldDivide(const Work& work, const CellLights& lights) const;
-  std::vector<Work> CollectUsed(double weight);
+  std::vector<Work> CollectUsed(double weight, const Thrift& thrift);
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
 

@@ -30,10 +30,13 @@ class TreeStore {
     std::atomic<bool>& wanted = wanted_[object];
     if (!wanted.load(std::memory_order_relaxed)) wanted.store(true, std::memory_order_relaxed);
   }
-  // Trees for the objects that readers asked for, as far as `memory_bytes` go.
-  void PlantWanted(uint64_t memory_bytes) {
+  // Trees for the objects that readers asked for, as far as `memory_bytes` go: those
+  // that may_grow(size_t object) -> bool lets grow.
+  template <class Fn>
+  void PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
     for (size_t object = 0; object < trees_.size(); ++object) {
       if (!wanted_[object].exchange(false, std::memory_order_relaxed) || trees_[object]) continue;
+      if (!may_grow(object)) continue;
       auto tree = std::make_unique<Tree>(scene_.objects[object]);
       const uint64_t bytes = tree->CountBytes();
       if (byte_size_ + bytes > memory_bytes) return;

@@ -10,9 +10,10 @@
 namespace linetree {
 namespace {
 
-// Nodes are floats, at most 1.64^2 of whose largest rounding reaches the sum; twice that, and what
-// the arithmetic in double adds.
-constexpr double kNodeRounding = 0x1p-21;
+// Nodes are floats, at most 1.64^2 of whose largest rounding reaches the sum; so does that of the
+// weights and products when the sum is evaluated in float (12 of 2^-24), where the coordinates are
+// off by 2^-24 of the cell, along which the polynomial changes by at most 9 times its largest node.
+constexpr double kNodeRounding = 0x1p-18;
 constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
 // Of the height of a light above a plane, relative to the coordinates it comes from.
@@ -64,8 +65,9 @@ std::vector<size_t> DiffuseSummer::Summable(const CellLights& lights) const {
 void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
                             const SurfaceCell& cell, CellLights& lights) const {
   if (IsBlack(scene_.MaterialOf(object).diffuse)) return;
-  const std::vector<size_t> summable = Summable(lights);
+  std::vector<size_t> summable = Summable(lights);
   if (summable.size() < static_cast<size_t>(kMinSummedLights)) return;
+  const size_t count = summable.size();
   const JetShape shape = MakeJetShape(scene_.objects[static_cast<size_t>(object)]);
   if (!shape.corner_normals.empty()) return;  // the normal turns: one by one
   if (const auto plane = chart.PlanarCellOf(patch, cell)) {
@@ -80,82 +82,125 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
   } else {
     lights.sums[0] = SumOnCurve(shape, patch, cell, summable);
   }
+  lights.unsummed = static_cast<uint32_t>(count - summable.size());
   if (!lights.sums[0] && !lights.sums[1]) return;
   for (const size_t i : summable) lights.lights[i].summed = true;
 }
 
-DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell& cell,
-                                                  const Vec3d& normal,
-                                                  const std::vector<size_t>& lights) const {
-  const Vec3d center = cell.corner + (cell.eu + cell.ev) * 0.5;
-  const double radius = std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2;
-  const double stretch = PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4);
-  auto sum = std::make_unique<DiffuseSum>();
-  std::array<Rgb, 16> nodes{};
-  std::array<Vec3d, 16> places;
-  for (size_t k = 0; k < places.size(); ++k) {
-    places[k] = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
-                cell.ev * (static_cast<double>(k / 4) / 3);
+namespace {
+
+using Nodes = std::array<Rgb, 16>;
+
+// A cell of a plane, as lights in front of it see it.
+class PlaneTerms {
+ public:
+  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal)
+      : normal_(normal),
+        center_(cell.corner + (cell.eu + cell.ev) * 0.5),
+        radius_(std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2),
+        stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)) {
+    for (size_t k = 0; k < places_.size(); ++k) {
+      places_[k] = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
+                   cell.ev * (static_cast<double>(k / 4) / 3);
+    }
   }
-  SumBounds bounds;
-  for (const size_t i : lights) {
-    const Light& light = scene_.lights[i];
-    if (light.kind == LightKind::kDirectional) {
-      const double cosine = Dot(normal, light.to_light);
-      if (!(cosine > 0)) continue;
-      const Rgb term = Scaled(light.irradiance, cosine);
-      for (Rgb& node : nodes) node += term;
-      bounds.least += Scaled(term, 1 - kLengthMargin);
-      bounds.most += term;
-      continue;
-    }
-    const double height = Dot(light.position - center, normal);
-    const double distance = Length(light.position - center);
-    if (!(height > kLengthMargin * (distance + radius))) {
-      // A light in the plane itself: which side it is on is for rounding to say.
-      if (height > -kLengthMargin * (distance + radius)) return nullptr;
-      continue;
-    }
-    const double nearest = std::max(height, distance - radius) * (1 - kLengthMargin);
-    const double farthest = (distance + radius) * (1 + kLengthMargin);
-    const Rgb strength = Scaled(light.irradiance, height);
+
+  enum class Taken { kYes, kNo, kBehind };
+
+  // Adds a light's term, if it is good enough, to the nodes and the bounds.
+  Taken Add(const Light& light, Nodes& nodes, SumBounds& bounds) const {
+    return light.kind == LightKind::kDirectional ? AddDirectional(light, nodes, bounds)
+                                                 : AddPoint(light, nodes, bounds);
+  }
+
+ private:
+  Taken AddDirectional(const Light& light, Nodes& nodes, SumBounds& bounds) const {
+    const double cosine = Dot(normal_, light.to_light);
+    if (!(cosine > 0)) return Taken::kBehind;
+    const Rgb term = Scaled(light.irradiance, cosine);
+    for (Rgb& node : nodes) node += term;
+    bounds.least += Scaled(term, 1 - kLengthMargin);
+    bounds.most += term;
+    return Taken::kYes;
+  }
+
+  Taken AddPoint(const Light& light, Nodes& nodes, SumBounds& bounds) const {
+    const double height = Dot(light.position - center_, normal_);
+    const double distance = Length(light.position - center_);
+    const double least_height = kLengthMargin * (distance + radius_);
+    if (height <= -least_height) return Taken::kBehind;
+    // Of a light in the plane itself rounding says which side it is on.
+    if (!(height > least_height)) return Taken::kNo;
+    const double nearest = std::max(height, distance - radius_) * (1 - kLengthMargin);
+    const double farthest = (distance + radius_) * (1 + kLengthMargin);
     const double noise =
-        kHeightRounding * (Length(center) + Length(light.position) + radius) / height;
-    bounds.error += Scaled(strength, stretch / (81 * PowerOf(nearest, 5)) + noise / nearest);
+        kHeightRounding * (Length(center_) + Length(light.position) + radius_) / height;
+    const double error = stretch_ / (81 * PowerOf(nearest, 5)) + noise / nearest;
+    if (!(error * farthest <= kMaxTermSpread)) return Taken::kNo;
+    const Rgb strength = Scaled(light.irradiance, height);
+    bounds.error += Scaled(strength, error);
     bounds.least += Scaled(strength, 1 / farthest);
     bounds.most += Scaled(strength, 1 / nearest);
-    for (size_t k = 0; k < places.size(); ++k) {
-      nodes[k] += Scaled(strength, 1 / Length(light.position - places[k]));
+    for (size_t k = 0; k < nodes.size(); ++k) {
+      nodes[k] += Scaled(strength, 1 / Length(light.position - places_[k]));
     }
+    return Taken::kYes;
   }
+
+  const Vec3d normal_, center_;
+  const double radius_, stretch_;
+  std::array<Vec3d, 16> places_;  // of the nodes
+};
+
+// A sum of so many lights, if it is one.
+std::unique_ptr<const DiffuseSum> Finished(int node_count, size_t count, const Rgb* nodes,
+                                           const SumBounds& bounds) {
+  if (count < static_cast<size_t>(kMinSummedLights)) return nullptr;
+  auto sum = std::make_unique<DiffuseSum>();
+  sum->nodes = node_count;
   sum->spread = bounds.Spread();
-  if (!(sum->spread <= kMaxSumSpread)) return nullptr;
-  std::transform(nodes.begin(), nodes.end(), sum->value.begin(), ToNode);
+  if (!std::isfinite(sum->spread)) return nullptr;
+  std::transform(nodes, nodes + node_count * node_count, sum->value.begin(), ToNode);
   return sum;
+}
+
+}  // namespace
+
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell& cell,
+                                                  const Vec3d& normal,
+                                                  std::vector<size_t>& lights) const {
+  const PlaneTerms terms(cell, normal);
+  Nodes nodes{};
+  SumBounds bounds;
+  size_t count = 0;
+  std::erase_if(lights, [&](size_t i) {
+    const auto taken = terms.Add(scene_.lights[i], nodes, bounds);
+    count += taken == PlaneTerms::Taken::kYes ? 1 : 0;
+    return taken == PlaneTerms::Taken::kNo;
+  });
+  return Finished(4, count, nodes.data(), bounds);
 }
 
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const JetShape& shape, int patch,
                                                   const SurfaceCell& cell,
-                                                  const std::vector<size_t>& lights) const {
+                                                  std::vector<size_t>& lights) const {
   scalar_jets::CurvedCell curve(shape, patch, cell);
   if (!curve.IsValid()) return nullptr;
-  auto sum = std::make_unique<DiffuseSum>();
-  sum->nodes = 2;
   std::array<Rgb, 4> nodes{};
   SumBounds bounds;
-  for (const size_t i : lights) {
+  size_t count = 0;
+  std::erase_if(lights, [&](size_t i) {
     const Light& light = scene_.lights[i];
     const auto term = curve.CosineTo(light);
-    if (!term.is_known) return nullptr;
+    if (!term.is_known || !(term.error <= kMaxTermSpread * term.least)) return true;
     bounds.error += Scaled(light.irradiance, term.error);
     bounds.least += Scaled(light.irradiance, term.least);
     bounds.most += Scaled(light.irradiance, term.most);
     for (size_t k = 0; k < 4; ++k) nodes[k] += Scaled(light.irradiance, term.corners[k]);
-  }
-  sum->spread = bounds.Spread();
-  if (!(sum->spread <= kMaxSumSpread)) return nullptr;
-  std::transform(nodes.begin(), nodes.end(), sum->value.begin(), ToNode);
-  return sum;
+    count += term.most > 0 ? 1 : 0;
+    return false;
+  });
+  return Finished(2, count, nodes.data(), bounds);
 }
 
 }  // namespace linetree

@@ -23,13 +23,16 @@ namespace linetree {
 // With fewer lights on, evaluating them one by one is as fast.
 inline constexpr int kMinSummedLights = 3;
 
-// Sums with a larger relative error are not kept.
-inline constexpr double kMaxSumSpread = 0.5;
+// A light whose own term may be off by a larger share is left out and evaluated exactly: mostly one
+// that is near. What is left in a sum is off by no more.
+inline constexpr double kMaxTermSpread = 1.0 / 64;
 
 class DiffuseSummer {
  public:
   // Keeps a reference to the scene, which must outlive it.
   explicit DiffuseSummer(const Scene& scene) : scene_(scene) {}
+
+  const Scene& scene() const { return scene_; }
 
   // Adds to a cell's lights, as they are certified, the sums that are worth it, and marks what is
   // in them.
@@ -41,11 +44,12 @@ class DiffuseSummer {
 
   // The lights that can be in a sum.
   std::vector<size_t> Summable(const CellLights& lights) const;
-  // On the side that `normal` points to.
+  // On the side that `normal` points to. Both take those lights out of `lights` that are not in the
+  // sum and may face the side.
   MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
-                      const std::vector<size_t>& lights) const;
+                      std::vector<size_t>& lights) const;
   MaybeSum SumOnCurve(const JetShape& shape, int patch, const SurfaceCell& cell,
-                      const std::vector<size_t>& lights) const;
+                      std::vector<size_t>& lights) const;
 
   const Scene& scene_;
 };

@@ -75,6 +75,7 @@ v1::RenderOptions RenderOptionsToWire(const RenderOptions& options) {
   message.set_max_relative_error(options.max_relative_error);
   message.set_max_depth(static_cast<uint32_t>(options.limits.max_depth));
   message.set_min_weight(options.limits.min_weight);
+  message.set_lanes(options.lanes == Lanes::kScalar ? v1::LANES_SCALAR : v1::LANES_SIMD);
   return message;
 }
 
@@ -84,6 +85,9 @@ absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& mes
   auto status = CheckEnum(v1::Mode_IsValid(message.mode()), path, "options.mode", message.mode());
   if (!status.ok()) return status;
   status = CheckEnum(v1::Judge_IsValid(message.judge()), path, "options.judge", message.judge());
+  if (!status.ok()) return status;
+
+  status = CheckEnum(v1::Lanes_IsValid(message.lanes()), path, "options.lanes", message.lanes());
   if (!status.ok()) return status;
 
   RenderOptions options = defaults;
@@ -97,6 +101,8 @@ absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& mes
     options.limits.max_depth = static_cast<int>(std::min(message.max_depth(), kLargest));
   }
   if (message.has_min_weight()) options.limits.min_weight = message.min_weight();
+  if (message.lanes() == v1::LANES_SIMD) options.lanes = Lanes::kSimd;
+  if (message.lanes() == v1::LANES_SCALAR) options.lanes = Lanes::kScalar;
   status = ValidateOptions(options);
   if (!status.ok()) return Prefixed(path, status);
   return options;

@@ -74,6 +74,7 @@ void FrameChunks::FillEnd(v1::FrameEnd* end) const {
   *end->mutable_stats() = FrameStatsToWire(frame_.stats, frame_.width, frame_.height);
   *end->mutable_camera() = CameraToWire(frame_.camera);
   end->set_max_relative_error(frame_.max_relative_error);
+  end->set_lane_rounding(frame_.lane_rounding);
   end->set_white(frame_.white);
 }
 
@@ -161,6 +162,7 @@ absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
   frame_.stats = FrameStatsFromWire(end.stats());
   frame_.camera = CameraFromWire(end.camera());
   frame_.max_relative_error = end.max_relative_error();
+  frame_.lane_rounding = end.lane_rounding();
   frame_.white = end.white();
   complete_ = true;
   return absl::OkStatus();

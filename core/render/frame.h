@@ -56,6 +56,8 @@ struct Frame {
   std::vector<float> depth;  // distance from the eye; infinity for the background
   Camera camera;
   double max_relative_error = 0;
+  // What arithmetic in float may add to that (PacketRadianceRounding); 0 for frames in double.
+  double lane_rounding = 0;
   double white = 1;  // Scene::white: what a picture shows as white
   SceneVersion scene_version;
   FrameStats stats;

@@ -12,12 +12,20 @@ enum class JudgeKind {
   kCertified,  // surface trees and certified linetrees: epsilon is proved
 };
 
+// How whole frames are traced; batches of rays always go one by one.
+enum class Lanes {
+  kScalar,  // one by one, in double, with linetrees where rays branch
+  kSimd,    // sixteen rays at a time, radiance summed in float: off by PacketRadianceRounding more;
+            // with surface trees where a planner finds that they pay (frame_plan.h)
+};
+
 struct RenderOptions {
   Mode mode = Mode::kCached;
   JudgeKind judge = JudgeKind::kCertified;
   // The promise: |answer - classical| <= max_relative_error * max(classical, RadianceFloor(scene)).
   double max_relative_error = 0.1;
   PathLimits limits;
+  Lanes lanes = Lanes::kScalar;
 };
 
 // Largest picture and batch that are accepted.

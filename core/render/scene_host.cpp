@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/render/frame_blocks.h"
 
 namespace linetree {
 namespace {
@@ -96,10 +97,11 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
     : scene_(std::move(scene)),
       limits_(limits),
       tracer_(*scene_),
+      packets_(tracer_),
       cache_(tracer_, RadianceShare(cache_options)),
       surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
-      paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths,
-             cache_options.max_cell_depth) {}
+      paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
+      plan_(scene_->objects.size(), cache_options.always_ask) {}
 
 void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
   const MemoryShares shares(memory_bytes);
@@ -108,13 +110,14 @@ void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
   paths_.SetMemoryBytes(shares.paths);
 }
 
-absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
-                                             const CancelToken* cancel, const Progress& progress) {
-  if (auto s = ValidateCamera(request.camera); !s.ok()) return s;
-  if (auto s = ValidateSize(request.width, request.height, limits_); !s.ok()) return s;
-  if (auto s = ValidateOptions(request.options); !s.ok()) return s;
-  const Stopwatch stopwatch;
-  Frame frame = EmptyFrame(*scene_, request);
+bool SceneHost::GoesByPackets(const RenderOptions& options) const {
+  const bool for_linetrees = options.mode == Mode::kCached && options.judge == JudgeKind::kPaper;
+  return options.lanes == Lanes::kSimd && packets_.IsWide() && !for_linetrees;
+}
+
+absl::Status SceneHost::RenderRays(const FrameRequest& request, WorkerPool& pool,
+                                   const CancelToken* cancel, const Progress& progress,
+                                   Frame& frame) {
   const EyeRays eye_rays(request.camera, request.width, request.height);
   const int band = RowsPerBand(request.width);
   for (int top = 0; top < request.height; top += band) {
@@ -141,6 +144,27 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
     }
     StoreAnswers(answers, static_cast<size_t>(top) * width, frame);
   }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
+                                             const CancelToken* cancel, const Progress& progress) {
+  if (auto s = ValidateCamera(request.camera); !s.ok()) return s;
+  if (auto s = ValidateSize(request.width, request.height, limits_); !s.ok()) return s;
+  if (auto s = ValidateOptions(request.options); !s.ok()) return s;
+  const Stopwatch stopwatch;
+  Frame frame = EmptyFrame(*scene_, request);
+  absl::Status status;
+  if (GoesByPackets(request.options)) {
+    frame.lane_rounding = PacketRadianceRounding(LargestExponent(*scene_));
+    status = RenderBlocks(packets_, surfaces_, plan_, request.options,
+                          EyeRays(request.camera, request.width, request.height), pool, cancel,
+                          progress, frame);
+    frame.stats.cache_bytes = CacheBytes();
+  } else {
+    status = RenderRays(request, pool, cancel, progress, frame);
+  }
+  if (!status.ok()) return status;
   frame.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   ++totals_.frames;

@@ -12,6 +12,8 @@
 #include "core/cache/path_cache.h"
 #include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/packet/packet_tracer.h"
 #include "core/render/answer_rays.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
@@ -52,6 +54,7 @@ class SceneHost {
 
   const Scene& scene() const { return *scene_; }
   const Tracer& tracer() const { return tracer_; }
+  const PacketTracer& packets() const { return packets_; }
   RadianceCache& cache() { return cache_; }
   SurfaceCache& surfaces() { return surfaces_; }
   PathCache& paths() { return paths_; }
@@ -76,12 +79,19 @@ class SceneHost {
   HostTotals totals() const;
 
  private:
+  // By packets, or ray by ray.
+  bool GoesByPackets(const RenderOptions& options) const;
+  absl::Status RenderRays(const FrameRequest& request, WorkerPool& pool, const CancelToken* cancel,
+                          const Progress& progress, Frame& frame);
+
   const std::shared_ptr<const Scene> scene_;
   const RenderLimits limits_;
   const Tracer tracer_;
+  const PacketTracer packets_;
   RadianceCache cache_;
   SurfaceCache surfaces_;
   PathCache paths_;
+  FramePlan plan_;
   mutable std::mutex totals_mutex_;
   HostTotals totals_;  // guarded by totals_mutex_
 };

@@ -54,6 +54,15 @@ class EyeRays {
   Ray Through(double x, double y) const;
   Ray ThroughPixel(int column, int row) const { return Through(column + 0.5, row + 0.5); }
 
+  // What Through adds up: the direction of (x, y), before it is scaled to unit length, is
+  // forward + right (2 x / width - 1) + up (1 - 2 y / height).
+  const Vec3d& eye() const { return eye_; }
+  const Vec3d& forward() const { return forward_; }
+  const Vec3d& right() const { return right_; }
+  const Vec3d& up() const { return up_; }
+  double width() const { return width_; }
+  double height() const { return height_; }
+
  private:
   Vec3d eye_;
   Vec3d forward_, right_, up_;  // right_ and up_ scaled by the half angle's tangents

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "core/trace/light_lists.h"
+#include "core/trace/shadow_function.h"
 #include "core/trace/tracer.h"
 #include "core/tree/candidate_search.h"
 #include "core/tree/diffuse_sum.h"
@@ -39,6 +40,23 @@ struct Contact {
 // A cell in the corner of a room touches three walls; more contacts are not kept.
 inline constexpr size_t kMaxContacts = 4;
 
+// A cell is divided for the sake of its sums where they leave out so many lights: a sum costs as
+// much as three.
+inline constexpr uint32_t kMinUnsummed = 4;
+
+// A light that may reach a piece of surface, and what there is to do about it.
+struct LightTask {
+  enum class Kind : uint8_t {
+    kOn,       // nothing is in between
+    kSummed,   // the same, and its diffuse light is in the cell's sums
+    kListed,   // `count` opaque objects from `first` on in CellLights::objects may be in between
+    kUnknown,  // search the scene
+  };
+  Kind kind = Kind::kUnknown;
+  uint16_t light = 0;
+  uint32_t first = 0, count = 0;
+};
+
 // The lights as seen from one piece of surface. Movable, not copyable: lists point into `objects`.
 struct CellLights {
   CellLights() = default;
@@ -54,6 +72,9 @@ struct CellLights {
   std::vector<ShadowFunction> functions;
   std::vector<float> coefficients;
   CellShadows shadows;
+  // Those of `lights` that may reach the piece, ascending: not kOff, not kFacingAway. For hits
+  // whose facing normal is the outward one.
+  std::vector<LightTask> tasks;
   // The diffuse light of those that are `summed`, on the outside or the side that a planar shape's
   // normal points to, and on its other side. Null: evaluate them one by one.
   std::array<std::unique_ptr<const DiffuseSum>, 2> sums;
@@ -62,13 +83,20 @@ struct CellLights {
     uint64_t bytes = lights.capacity() * sizeof(LightList) + objects.capacity() * sizeof(int32_t) +
                      contacts.capacity() * sizeof(Contact) +
                      functions.capacity() * sizeof(ShadowFunction) +
-                     coefficients.capacity() * sizeof(float);
+                     coefficients.capacity() * sizeof(float) + tasks.capacity() * sizeof(LightTask);
     for (const auto& sum : sums) bytes += sum ? sizeof(DiffuseSum) : 0;
     return bytes;
   }
+  // Lights that are on but not in the sums, where the sums of smaller cells could hold them.
+  uint32_t unsummed = 0;
+
   bool HasFunctions() const { return !functions.empty(); }
   bool is_decided = false;  // no smaller piece could know more
   bool IsDecided() const { return is_decided; }
+  // Whether smaller cells would make answers cheaper.
+  bool WantsSmaller() const { return unsummed >= kMinUnsummed || !IsDecided(); }
+  // Sets `tasks`, when all else is final.
+  void MakeTasks(const Scene& scene);
   // Whether what is said holds at a point of the piece.
   bool HoldAt(const Vec3d& point) const {
     return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {

@@ -97,6 +97,24 @@ class SurfaceChart {
   // be; nothing that a hull promises holds for them.
   bool IsOn(int face, const Vec3d& point) const;
 
+  // How points of one face are located and tested, as numbers: Locate and IsOn for those who handle
+  // many points at a time. With d = point - center:
+  //   kPlane    u = (row[0].d + 1) / 2, v = (row[1].d + 1) / 2, both in [0, 1]; on the face where
+  //             |row[2].d| <= tolerance (world length), row[2] the unit normal of PlanarCellOf.
+  //   kSphere, kLateral   p = (row[0].d, row[1].d, row[2].d) is in object space; on the face where
+  //             p is as far from the surface as the tolerance (object length) at most.
+  // Coordinates may differ from Locate's by rounding; hulls have room for that.
+  struct FaceForm {
+    enum class Kind : uint8_t { kPlane, kSphere, kLateral };
+    Kind kind = Kind::kPlane;
+    int patch = 0;  // of a plane; the first one of a curved face
+    Vec3d center;
+    std::array<Vec3d, 3> row;
+    double tolerance = 0;
+    double base_radius = 1, taper = 0;  // kLateral
+  };
+  FaceForm FormOf(int face) const;
+
   // conv(points) contains every x on the surface whose Locate falls into the cell, up to rounding
   // of Locate at the cell's sides, and every point within Slack() of such an x.
   PatchHull HullOf(int patch, const SurfaceCell& cell) const;
@@ -121,6 +139,9 @@ class SurfaceChart {
   bool IsOtherSide(const Vec3d& facing) const {
     return is_thin_ && Dot(facing, planes_[0].normal) < 0;
   }
+
+  // Whether the shape lies in one plane and has two outer sides.
+  bool IsThin() const { return is_thin_; }
 
   uint64_t HeapBytes() const { return planes_.capacity() * sizeof(PlanePatch); }
 

@@ -8,7 +8,11 @@
 namespace linetree {
 
 SurfaceTree::SurfaceTree(const Object& object)
-    : object_(object), chart_(object), cells_(chart_.patches()) {}
+    : object_(object), chart_(object), cells_(chart_.patches()) {
+  const int faces = FaceCount(object.shape);
+  forms_.reserve(static_cast<size_t>(faces));
+  for (int face = 0; face < faces; ++face) forms_.push_back(chart_.FormOf(face));
+}
 
 KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) const {
   KnownLights known;
@@ -50,7 +54,8 @@ std::optional<size_t> SurfaceTree::SideOf(const Hit& hit) const {
 }
 
 uint64_t SurfaceTree::CountBytes() const {
-  return sizeof(SurfaceTree) - sizeof(cells_) + chart_.HeapBytes() + cells_.CountBytes();
+  return sizeof(SurfaceTree) - sizeof(cells_) + chart_.HeapBytes() +
+         forms_.capacity() * sizeof(SurfaceChart::FaceForm) + cells_.CountBytes();
 }
 
 }  // namespace linetree

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/trace/light_lists.h"
 #include "core/tree/cell_tree.h"
@@ -28,6 +29,8 @@ class SurfaceTree {
 
   const SurfaceChart& chart() const { return chart_; }
   CellTree<SurfaceTraits>& cells() { return cells_; }
+  const CellTree<SurfaceTraits>& cells() const { return cells_; }
+  const SurfaceChart::FaceForm& FormOf(int face) const { return forms_[static_cast<size_t>(face)]; }
 
   // What the smallest cell knows that holds the hit, with sums that meet `epsilon`. Counts a use.
   KnownLights Find(const Hit& hit, double epsilon, uint32_t now) const;
@@ -45,6 +48,7 @@ class SurfaceTree {
 
   const Object& object_;
   SurfaceChart chart_;
+  std::vector<SurfaceChart::FaceForm> forms_;  // by face
   CellTree<SurfaceTraits> cells_;
 };
 

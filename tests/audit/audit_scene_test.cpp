@@ -116,7 +116,7 @@ TEST(AuditSceneTest, FindsPixelsThatAreOff) {
   } answerer;
   const auto request = RequestOf(SceneFamily::kGeneric, {0, 0.1});
   const SceneAudit audit = Audited(request, answerer);
-  EXPECT_EQ(audit.by_kind[static_cast<size_t>(QueryKind::kFrame)].violations, 4u);
+  EXPECT_EQ(audit.by_kind[static_cast<size_t>(QueryKind::kFrame)].violations, 8u);
   EXPECT_TRUE(audit.violations[0].from_frame);
 }
 

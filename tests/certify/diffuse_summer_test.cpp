@@ -31,9 +31,12 @@ CellLights AllOn(const Scene& scene) {
   return lights;
 }
 
-Rgb ExactSum(const Scene& scene, const Hit& hit) {
+// Of the lights that the cell says are summed.
+Rgb ExactSum(const Scene& scene, const CellLights& cell, const Hit& hit) {
   Rgb sum;
-  for (const Light& light : scene.lights) {
+  for (size_t i = 0; i < scene.lights.size(); ++i) {
+    if (!cell.lights[i].summed) continue;
+    const Light& light = scene.lights[i];
     const LightView<double> view = ViewOf(light, hit.point);
     const double cosine = Dot(hit.normal, view.to_light);
     if (cosine > 0) sum += Scaled(light.irradiance, cosine);
@@ -70,7 +73,7 @@ void Check(const Scene& scene, int depth, test::Random& random, Seen& seen) {
     seen.sums += is_new ? 1 : 0;
     const double scale = std::ldexp(1.0, depth);
     const Rgb answer = sum->At(at.u * scale - cell.i, at.v * scale - cell.j);
-    const Rgb exact = ExactSum(scene, hit);
+    const Rgb exact = ExactSum(scene, found->second, hit);
     for (int c = 0; c < 3; ++c) {
       const double error = std::abs(answer[c] - exact[c]);
       ASSERT_LE(error, sum->spread * exact[c] + 1e-300) << "depth " << depth;
@@ -102,7 +105,7 @@ TEST(DiffuseSummer, AFloorUnderALampIsSummedByTheMetre) {
   for (int i = 0; i < 4; ++i) scene.lights.push_back(test::PointLight({0.4 * i, 0.3 * i, 2.5}));
   CellLights lights = AllOn(scene);
   const SurfaceChart chart(scene.objects[0]);
-  DiffuseSummer(scene).AddSums(0, chart, 0, {}, lights);
+  DiffuseSummer(scene).AddSums(0, chart, 0, {1, 1, 1}, lights);
   const auto& above = lights.sums[chart.IsOtherSide({0, 0, 1}) ? 1 : 0];
   ASSERT_TRUE(above);
   EXPECT_LT(above->spread, 0.03);
@@ -136,7 +139,7 @@ TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
     return lights.sums[chart.IsOtherSide({0, 0, 1}) ? 1 : 0] != nullptr;
   };
   for (int i = 0; i < kMinSummedLights; ++i) {
-    scene.lights.push_back(test::PointLight({0, 0, 2.0 + i}));
+    scene.lights.push_back(test::PointLight({0, 0, 4.0 + i}));
   }
   EXPECT_TRUE(summed());
   scene.lights.pop_back();
@@ -145,7 +148,7 @@ TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
   EXPECT_FALSE(summed()) << "a light in the plane itself";
   scene.lights.back() = test::PointLight({0, 0, 0.01});
   EXPECT_FALSE(summed()) << "a light so near that the bound is useless";
-  scene.lights.back() = test::PointLight({0, 0, 3});
+  scene.lights.back() = test::PointLight({0, 0, 5});
   scene.lights.back().fade_distance = 1;
   EXPECT_FALSE(summed()) << "fall-off has no bound yet";
 }

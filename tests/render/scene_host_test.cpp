@@ -41,6 +41,36 @@ TEST_F(SceneHostTest, RefusesBadRequestsByField) {
   EXPECT_EQ(host_.totals().frames, 0u);
 }
 
+TEST_F(SceneHostTest, BothKindsOfLanesGiveOnePicture) {
+  request_.options.mode = Mode::kClassical;
+  const auto scalar = host_.RenderFrame(request_, pool_);
+  request_.options.lanes = Lanes::kSimd;
+  const auto simd = host_.RenderFrame(request_, pool_);
+  ASSERT_TRUE(scalar.ok() && simd.ok());
+  EXPECT_EQ(simd->object, scalar->object);
+  EXPECT_EQ(simd->depth, scalar->depth);
+  EXPECT_EQ(simd->source, scalar->source);
+  EXPECT_EQ(simd->stats.base, scalar->stats.base);
+  EXPECT_EQ(simd->stats.pixels, scalar->stats.pixels);
+  EXPECT_EQ(simd->stats.traced, scalar->stats.traced);
+  EXPECT_EQ(simd->stats.background, scalar->stats.background);
+  EXPECT_EQ(simd->stats.verdicts, scalar->stats.verdicts);
+  const double floor = RadianceFloor(host_.scene());
+  for (size_t i = 0; i < scalar->radiance.size(); ++i) {
+    const double classical = scalar->radiance[i];
+    EXPECT_NEAR(simd->radiance[i], classical,
+                PacketRadianceRounding(20) * std::max(classical, floor));
+  }
+}
+
+TEST_F(SceneHostTest, CancelStopsWideFrames) {
+  request_.options.mode = Mode::kClassical;
+  request_.options.lanes = Lanes::kSimd;
+  CancelToken cancel;
+  cancel.Cancel();
+  EXPECT_TRUE(absl::IsCancelled(host_.RenderFrame(request_, pool_, &cancel).status()));
+}
+
 TEST_F(SceneHostTest, RaysAndFramesAgree) {
   request_.options.max_relative_error = 0;
   const auto frame = host_.RenderFrame(request_, pool_);

@@ -1,0 +1,68 @@
+// The frame path for every target of Highway; which one runs is decided at run time.
+//
+// Everything ordinary is included here, before code for special targets is: nothing of it may be
+// compiled for one.
+#include "core/frame/frame_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <variant>
+#include <vector>
+
+#include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/jet/simd_targets.h"
+#include "core/packet/margins.h"
+#include "core/packet/packet_scene.h"
+#include "core/packet/packet_shape.h"
+#include "core/packet/topology.h"
+#include "core/trace/intersect.h"
+#include "core/trace/shade.h"
+#include "core/trace/shadow_function.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/frame/frame_kernels.cpp"
+#include "hwy/foreach_target.h"
+// After foreach_target.h.
+#include "hwy/highway.h"
+#if HWY_TARGET != HWY_SCALAR
+#include "core/frame/lights-inl.h"
+#include "core/packet/block-inl.h"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace linetree::HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR
+void RenderFrameBlock(const PacketScene&, const BlockTask&, uint64_t, const SurfaceCache::Reader&,
+                      FramePlan&, bool, PacketWorkspace&, PacketCounts&) {}
+#else
+void RenderFrameBlock(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+                      const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
+                      PacketWorkspace& workspace, PacketCounts& counts) {
+  CachedLights lights(scene, reader, plan, booking, workspace, counts);
+  RenderTiles(scene, task, tiles, lights, workspace, counts);
+}
+#endif
+
+}  // namespace linetree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace linetree {
+
+HWY_EXPORT(RenderFrameBlock);
+
+void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+                          const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                          PacketWorkspace& workspace, PacketCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
+  (scene, task, tiles, lights, plan, booking, workspace, counts);
+}
+
+}  // namespace linetree
+#endif

@@ -1,0 +1,16 @@
+// The frame path's work, compiled for every target of Highway (frame_tracer.h).
+#pragma once
+
+#include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/packet/packet_kernels.h"
+
+namespace linetree {
+
+// Of the tiles (4 x 4 pixels) of a block, row by row, those whose bit is set in `tiles`.
+// `booking`: the work is booked in the plan.
+void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+                          const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                          PacketWorkspace& workspace, PacketCounts& counts);
+
+}  // namespace linetree

@@ -1,0 +1,142 @@
+// Which objects' surface trees are worth asking: a planner that goes by counted work, so that what
+// it decides does not depend on clocks, threads or the machine.
+//
+// Of some packets both are counted, what the lights cost with the trees and what they would cost
+// without, and booked to the objects that the packets lie on. An object whose trees cost more than
+// they save is not asked until they do; a share of its packets is tried all the same, frame after
+// frame, so that it may come back.
+//
+// Thread safety: every method may be called from any thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace linetree {
+
+// Work of packets, in about nanoseconds of the machine it was calibrated on (AVX-512, 2.6 GHz):
+// what counts are the proportions.
+inline constexpr uint32_t kLightWork = 14;   // one light: where it is and what it adds
+inline constexpr uint32_t kShadowWork = 28;  // one search for what is in between, whatever it meets
+inline constexpr uint32_t kTestWork = 9;     // one node or shape on the way
+inline constexpr uint32_t kPlaneWork = 35;   // places of hits on a plane
+inline constexpr uint32_t kCurveWork = 230;  // on a curved face
+inline constexpr uint32_t kCellWork = 36;    // one cell: found, its lanes collected
+inline constexpr uint32_t kSumWork = 20;     // one sum of diffuse light
+inline constexpr uint32_t kListWork = 12;    // one list of candidates
+inline constexpr uint32_t kCandidateWork = 8;
+
+// What a packet is going to cost in cells that are still to be built, beside kCellWork: mostly it
+// lies in more than one, six lights in ten are on and not in a sum, one in seven has a list.
+inline uint32_t WorkOfUnknown(size_t lights) {
+  return 45 + static_cast<uint32_t>(lights) * kLightWork;
+}
+
+// Of a new cell on a plane, or on a curved face, with its share of the cells above it.
+inline double WorkOfCell(size_t lights, bool curved) {
+  return curved ? 3000 + 900.0 * static_cast<double>(lights)
+                : 2500 + 220.0 * static_cast<double>(lights);
+}
+
+// Trees that save less than this share are left alone: counts are not that exact.
+inline constexpr double kLeastSaving = 0.2;
+
+class FramePlan {
+ public:
+  // `always`: no tree is skipped, and every cell is worth its price.
+  explicit FramePlan(size_t objects, bool always = false) : always_(always), accounts_(objects) {}
+
+  bool always() const { return always_; }
+
+  bool Skips(size_t object) const { return !(SavedPerPoint(object) > 0); }
+  // Work that the trees save at one shading point, as far as is known; not positive: none. Of
+  // objects that have not been seen yet, what the others' save.
+  double SavedPerPoint(size_t object) const {
+    if (always_) return kPriceless;
+    const float saved = accounts_[object].saved.load(std::memory_order_relaxed);
+    return saved == kUnseen ? usual_.load(std::memory_order_relaxed) : saved;
+  }
+
+  // Work that the trees would have saved at all points that were booked of late.
+  double SavedInAll(size_t object) const {
+    if (always_) return kPriceless;
+    return SavedPerPoint(object) * accounts_[object].points.load(std::memory_order_relaxed);
+  }
+
+  // So much work was done with the trees for so many shading points, and so much would have been
+  // done without. Of lanes in no cell yet `asked` is what the question costs and what cells cost at
+  // least.
+  void Book(size_t object, uint32_t points, uint32_t asked, uint32_t classical) {
+    Account& account = accounts_[object];
+    account.points.fetch_add(points, std::memory_order_relaxed);
+    account.asked.fetch_add(asked, std::memory_order_relaxed);
+    account.classical.fetch_add(classical, std::memory_order_relaxed);
+  }
+
+  // The object's trees are not worth planting; until it is booked again.
+  void Skip(size_t object) { accounts_[object].saved.store(0, std::memory_order_relaxed); }
+
+  // Takes what was booked into account.
+  void Decide() {
+    std::lock_guard lock(decide_mutex_);
+    bool wants_any = false;
+    uint64_t points = 0, asked = 0, classical = 0;
+    for (size_t object = 0; object < accounts_.size(); ++object) {
+      Account& account = accounts_[object];
+      const uint32_t own_points = account.points.load(std::memory_order_relaxed);
+      if (own_points == 0) continue;
+      const uint32_t own_asked = account.asked.load(std::memory_order_relaxed);
+      const uint32_t own_classical = account.classical.load(std::memory_order_relaxed);
+      const float saved = SavedOf(own_points, own_asked, own_classical);
+      account.saved.store(saved, std::memory_order_relaxed);
+      wants_any = wants_any || saved > 0;
+      points += own_points;
+      asked += own_asked;
+      classical += own_classical;
+      // What is old counts less and less.
+      account.points.store(own_points / 2, std::memory_order_relaxed);
+      account.asked.store(own_asked / 2, std::memory_order_relaxed);
+      account.classical.store(own_classical / 2, std::memory_order_relaxed);
+    }
+    if (points > 0) usual_ = SavedOf(points, asked, classical);
+    if (points > 0) wants_any_ = wants_any;
+    ++decisions_;
+  }
+  // Whether some object's trees were found to pay.
+  bool WantsAny() const { return always_ || wants_any_; }
+  // How often it was decided.
+  uint32_t decisions() const { return decisions_; }
+
+  uint64_t ByteSize() const { return accounts_.capacity() * sizeof(Account); }
+  size_t CountSkipped() const {
+    size_t count = 0;
+    for (size_t object = 0; object < accounts_.size(); ++object) count += Skips(object) ? 1 : 0;
+    return count;
+  }
+
+ private:
+  static constexpr float kUnseen = -1;
+  static constexpr double kPriceless = 1e9;
+
+  static float SavedOf(uint64_t points, uint64_t asked, uint64_t classical) {
+    const double all = static_cast<double>(classical);
+    const double saved = all - static_cast<double>(asked);
+    return saved > kLeastSaving * all ? static_cast<float>(saved / static_cast<double>(points)) : 0;
+  }
+
+  struct Account {
+    std::atomic<uint32_t> points{0}, asked{0}, classical{0};
+    std::atomic<float> saved{kUnseen};  // per point
+  };
+  const bool always_;
+  std::vector<Account> accounts_;  // by object
+  std::atomic<float> usual_{1};    // saved per point, of all objects together
+  std::atomic<bool> wants_any_{true};
+  std::atomic<uint32_t> decisions_{0};
+  std::mutex decide_mutex_;
+};
+
+}  // namespace linetree

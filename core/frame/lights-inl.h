@@ -1,0 +1,360 @@
+// The lights at the hits of a packet, with what surface trees know of them in place of searches.
+#if defined(LINETREE_CORE_FRAME_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_FRAME_LIGHTS_INL_H_
+#undef LINETREE_CORE_FRAME_LIGHTS_INL_H_
+#else
+#define LINETREE_CORE_FRAME_LIGHTS_INL_H_
+#endif
+
+#include <bit>
+#include <cmath>
+
+#include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/frame/listed-inl.h"
+#include "core/frame/places-inl.h"
+#include "core/frame/sums-inl.h"
+#include "core/packet/follow-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace linetree::HWY_NAMESPACE {
+
+// Lights of a Follower. `booking`: the work is counted for the plan, beside what it would be
+// without the trees.
+class CachedLights {
+ public:
+  HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
+                          FramePlan& plan, bool booking, PacketWorkspace& workspace,
+                          PacketCounts& counts)
+      : scene_(scene),
+        reader_(reader),
+        plan_(plan),
+        booking_(booking),
+        workspace_(workspace),
+        last_blockers_(workspace.LastBlockers(scene.lights().size())),
+        counts_(counts) {}
+
+  void Add(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
+           const LaneMaterials& materials, LaneMask lanes, LightSum& sum) {
+    if (!booking_ && SkipsAll(hits, lanes)) {
+      SearchedLights(scene_, false, workspace_, counts_)
+          .Add(packet, hits, at, materials, lanes, sum);
+      for (LaneMask left = lanes; left != 0; left &= left - 1) {
+        workspace_.uses()[packet.pixel[std::countr_zero(left)]] |= kSearched;
+      }
+      return;
+    }
+    groups_ = 0;
+    use_ = {};
+    unknown_ = 0;
+    next_unknown_ = 0;
+    visits_ = 0;
+    const uint32_t classical =
+        booking_ ? WorkWithoutTrees(packet, hits, at, materials, lanes, sum) : 0;
+    Collect(hits, lanes, materials, sum);
+    use_.listed = lanes & ~unknown_;
+    use_.searched = unknown_;
+    AddTasks(hits, at, materials, sum);
+    if (booking_) Book(classical, lanes);
+    for (LaneMask left = lanes; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const auto bit = [lane](LaneMask mask) { return mask >> lane & 1; };
+      workspace_.uses()[packet.pixel[lane]] |= static_cast<uint8_t>(
+          bit(use_.searched) * kSearched | bit(use_.listed) * kListed | bit(use_.summed) * kSummed);
+    }
+  }
+
+ private:
+  // Lanes that lie in one cell.
+  struct Group {
+    const CellLights* known = nullptr;
+    LaneMask lanes = 0;
+    LaneMask summed = 0;  // of these: kSummed lights are done but for their highlights
+    size_t next = 0;      // task
+  };
+  // Lanes on one face, and the work that they cost.
+  struct Visit {
+    int32_t object;
+    LaneMask lanes;
+    uint32_t work;
+  };
+  // What was done for the lanes of the packet.
+  struct Use {
+    LaneMask searched = 0, listed = 0, summed = 0;
+  };
+  // What there is to do about one light.
+  struct Work {
+    LaneMask on = 0, shines = 0, search = 0, listed_lanes = 0;
+    int lists = 0;
+    struct Listed {
+      const Group* group;
+      const LightTask* task;
+    };
+    Listed listed[kPacketLanes];  // the first `lists`
+
+    HWY_INLINE Work() {}
+  };
+
+  void Collect(const PacketHits& hits, LaneMask lanes, const LaneMaterials& materials,
+               LightSum& sum) {
+    const Ints objects = Ints::Load(hits.object), faces = Ints::Load(hits.face);
+    // A ray inside a solid asks the solid itself too.
+    unknown_ = lanes & hits.inside;
+    for (LaneMask left = lanes & ~unknown_; left != 0;) {
+      const int lane = std::countr_zero(left);
+      const int32_t object = hits.object[lane], face = hits.face[lane];
+      const LaneMask same =
+          BitsOf(OfFloats((objects == Ints::All(object)) & (faces == Ints::All(face)))) & left;
+      left &= ~same;
+      skipped_ = plan_.Skips(static_cast<size_t>(object));
+      if (skipped_ && !booking_) {
+        unknown_ |= same;
+        continue;
+      }
+      Visit& visit = visit_[visits_++];
+      visit = {object, same, 0};
+      const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
+      if (tree == nullptr) {
+        visit.work = kPlaneWork + kCellWork + WorkOfUnknown(scene_.lights().size());
+        unknown_ |= same;
+        continue;
+      }
+      const FaceForm& form = tree->FormOf(face);
+      visit.work = form.kind == FaceForm::Kind::kPlane ? kPlaneWork : kCurveWork;
+      PlaceHits(form, hits, same, places_);
+      // A grazing ray's normal may be turned inwards by rounding.
+      const LaneMask placed = places_.on & (tree->chart().IsThin() ? kAllLanes : places_.outward);
+      unknown_ |= same & ~placed;
+      CollectCells(*tree, hits, placed, materials, sum);
+    }
+  }
+
+  void CollectCells(const SurfaceTree& tree, const PacketHits& hits, LaneMask lanes,
+                    const LaneMaterials& materials, LightSum& sum) {
+    for (LaneMask left = lanes; left != 0;) {
+      const int lane = std::countr_zero(left);
+      const SurfaceCell deepest = {kMaxSurfaceDepth, static_cast<uint32_t>(places_.i[lane]),
+                                   static_cast<uint32_t>(places_.j[lane])};
+      const SurfaceNode& node = tree.cells().Find(places_.patch[lane], deepest, reader_.now());
+      LaneMask same = LanesIn(node, lane) & left;
+      left &= ~same;
+      if (!skipped_) {
+        const auto uses = static_cast<uint32_t>(std::popcount(same));
+        node.uses.fetch_add(uses, std::memory_order_relaxed);
+      }
+      if (booking_) visit_[visits_ - 1].work += kCellWork + WorkOf(node.payload.get());
+      if (node.payload == nullptr) {
+        unknown_ |= same;
+        continue;
+      }
+      for (const Contact& contact : node.payload->contacts) {
+        const Doubles height =
+            Dot(Load(hits.point) - Spread(contact.plane.point), Spread(contact.plane.normal));
+        const LaneMask clear = BitsOf(height > Doubles::All(contact.clearance));
+        unknown_ |= same & ~clear;
+        same &= clear;
+      }
+      if (same != 0) Open(node, same, tree.chart().IsThin(), materials, sum);
+    }
+  }
+
+  // Lanes on the same patch whose cell is the node's.
+  HWY_INLINE LaneMask LanesIn(const SurfaceNode& node, int lane) const {
+    const int shift = kMaxSurfaceDepth - node.cell.depth;
+    const auto index = [&](const int32_t* of, uint32_t cell) HWY_ATTR {
+      Truth<int32_t> r;
+      const Ints x = Ints::Load(of);
+      for (size_t k = 0; k < LanesOf<int32_t>::kVectors; ++k) {
+        r.v[k] = hn::Eq(hn::ShiftRightSame(x.v[k], shift),
+                        hn::Set(Ints::Tag(), static_cast<int32_t>(cell)));
+      }
+      return r;
+    };
+    const Truth<int32_t> patch = Ints::Load(places_.patch) == Ints::All(places_.patch[lane]);
+    return BitsOf(OfFloats(patch & index(places_.i, node.cell.i) & index(places_.j, node.cell.j)));
+  }
+
+  void Open(const SurfaceNode& node, LaneMask lanes, bool thin, const LaneMaterials& materials,
+            LightSum& sum) {
+    Group& group = group_[groups_++];
+    group = {node.payload.get(), lanes, 0, 0};
+    const double scale = std::ldexp(1.0, node.cell.depth);
+    const auto local = [&](const double* x, uint32_t cell, float* to) HWY_ATTR {
+      const Doubles in = Doubles::Load(x) * Doubles::All(scale) - Doubles::All(cell);
+      const Floats f = Demoted(Clamped(in));
+      Select(MaskOf(lanes), f, Floats::Load(to)).Store(to);
+      return f;
+    };
+    const Floats s = local(places_.u, node.cell.i, s_), t = local(places_.v, node.cell.j, t_);
+    if (!(reader_.epsilon() > 0)) return;
+    const LaneMask outside = thin ? lanes & places_.outward : lanes;
+    AddSum(group, 0, outside, s, t, materials, sum);
+    AddSum(group, 1, lanes & ~outside, s, t, materials, sum);
+  }
+
+  HWY_INLINE void AddSum(Group& group, size_t side, LaneMask lanes, const Floats& s,
+                         const Floats& t, const LaneMaterials& materials, LightSum& sum) {
+    const DiffuseSum* diffuse = group.known->sums[side].get();
+    if (lanes == 0 || diffuse == nullptr || !(diffuse->spread <= reader_.epsilon())) return;
+    Floats light[3];
+    SumAt(*diffuse, s, t, light);
+    for (size_t c = 0; c < 3; ++c) light[c] = light[c] * materials.diffuse[c];
+    sum.AddRadiance(light, lanes);
+    group.summed |= lanes;
+    use_.summed |= lanes;
+    counts_.rays.summed += static_cast<uint64_t>(std::popcount(lanes));
+  }
+
+  // Light by light, in order, as the classical tracer sums them.
+  void AddTasks(const PacketHits& hits, const HitPoints& at, const LaneMaterials& materials,
+                LightSum& sum) {
+    if (groups_ == 1 && unknown_ == 0) {
+      for (const LightTask& task : group_[0].known->tasks) {
+        Work work;
+        Take(group_[0], task, materials, work);
+        AddLight(task.light, work, hits, at, sum);
+      }
+      return;
+    }
+    const size_t count = scene_.lights().size();
+    for (;;) {
+      size_t light = unknown_ != 0 ? next_unknown_ : count;
+      for (int g = 0; g < groups_; ++g) {
+        const Group& group = group_[g];
+        if (group.next < group.known->tasks.size()) {
+          light = std::min<size_t>(light, group.known->tasks[group.next].light);
+        }
+      }
+      if (light >= count) return;
+      Work work;
+      Take(light, materials, work);
+      AddLight(light, work, hits, at, sum);
+    }
+  }
+
+  HWY_INLINE void Take(size_t light, const LaneMaterials& materials, Work& work) {
+    if (unknown_ != 0) {
+      work.search = unknown_;
+      next_unknown_ = light + 1;
+    }
+    for (int g = 0; g < groups_; ++g) {
+      Group& group = group_[g];
+      if (group.next >= group.known->tasks.size()) continue;
+      const LightTask& task = group.known->tasks[group.next];
+      if (task.light != light) continue;
+      ++group.next;
+      Take(group, task, materials, work);
+    }
+  }
+
+  HWY_INLINE void Take(const Group& group, const LightTask& task, const LaneMaterials& materials,
+                       Work& work) {
+    switch (task.kind) {
+      case LightTask::Kind::kOn:
+        work.on |= group.lanes;
+        break;
+      case LightTask::Kind::kSummed:
+        work.on |= group.lanes & ~group.summed;
+        work.shines |= group.summed & materials.shines;
+        break;
+      case LightTask::Kind::kListed:
+        work.listed[work.lists++] = {&group, &task};
+        work.listed_lanes |= group.lanes;
+        break;
+      case LightTask::Kind::kUnknown:
+        work.search |= group.lanes;
+        use_.searched |= group.lanes;
+        break;
+    }
+  }
+
+  HWY_INLINE void AddLight(size_t light, const Work& work, const PacketHits& hits,
+                           const HitPoints& at, LightSum& sum) {
+    const LaneMask asked = work.on | work.shines | work.search | work.listed_lanes;
+    if (asked == 0) return;
+    const LaneLight seen = LightAt(scene_, light, hits, at, asked, counts_.facing_again);
+    PacketShadow shadow;
+    shadow.facing = seen.facing;
+    shadow.lit = shadow.filtered = 0;
+    if ((seen.facing & work.search) != 0) {
+      LaneLight searched = seen;
+      searched.facing &= work.search;
+      CastAt(scene_, hits, at, searched, static_cast<int>(light), last_blockers_[light], shadow,
+             counts_);
+      shadow.facing = seen.facing;
+    }
+    const LaneMask known = seen.facing & (work.on | work.shines | work.listed_lanes);
+    counts_.rays.shadow += static_cast<uint64_t>(std::popcount(known));
+    counts_.rays.listed += static_cast<uint64_t>(std::popcount(known));
+    shadow.lit |= seen.facing & (work.on | work.shines);
+    for (int i = 0; i < work.lists; ++i) {
+      const LaneMask lanes = seen.facing & work.listed[i].group->lanes;
+      if (lanes == 0) continue;
+      const ListedShadows listed(scene_, *work.listed[i].group->known, *work.listed[i].task);
+      listed.Cast(Floats::Load(s_), Floats::Load(t_), lanes, seen, hits, at, shadow, counts_);
+    }
+    sum.Add(light, seen, shadow, work.shines);
+  }
+
+  HWY_INLINE bool SkipsAll(const PacketHits& hits, LaneMask lanes) const {
+    for (LaneMask left = lanes; left != 0; left &= left - 1) {
+      if (!plan_.Skips(static_cast<size_t>(hits.object[std::countr_zero(left)]))) return false;
+    }
+    return true;
+  }
+
+  // What a packet in a cell costs; in one that is not built yet, at least.
+  uint32_t WorkOf(const CellLights* known) const {
+    if (known == nullptr) return WorkOfUnknown(scene_.lights().size());
+    uint32_t work = known->sums[0] || known->sums[1] ? kSumWork : 0;
+    for (const LightTask& task : known->tasks) {
+      if (task.kind == LightTask::Kind::kSummed && reader_.epsilon() > 0) continue;
+      work += kLightWork;
+      if (task.kind == LightTask::Kind::kListed) work += kListWork + task.count * kCandidateWork;
+      if (task.kind == LightTask::Kind::kUnknown) work += kShadowWork + 4 * kTestWork;
+    }
+    return work;
+  }
+
+  // Does what the classical tracer does, for the sake of counting it.
+  uint32_t WorkWithoutTrees(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
+                            const LaneMaterials& materials, LaneMask lanes, const LightSum& sum) {
+    LightSum forgotten = sum;
+    PacketCounts done;
+    SearchedLights searched(scene_, false, workspace_, done);
+    searched.Add(packet, hits, at, materials, lanes, forgotten);
+    return static_cast<uint32_t>(scene_.lights().size() * kLightWork +
+                                 done.shadow_packets * kShadowWork + done.shadow_tests * kTestWork);
+  }
+
+  void Book(uint32_t classical, LaneMask lanes) {
+    const auto all = static_cast<uint32_t>(std::popcount(lanes));
+    for (int i = 0; i < visits_; ++i) {
+      const auto own = static_cast<uint32_t>(std::popcount(visit_[i].lanes));
+      plan_.Book(static_cast<size_t>(visit_[i].object), own, visit_[i].work, classical * own / all);
+    }
+  }
+
+  const PacketScene& scene_;
+  const SurfaceCache::Reader& reader_;
+  FramePlan& plan_;
+  const bool booking_;
+  PacketWorkspace& workspace_;
+  int32_t* const last_blockers_;
+  PacketCounts& counts_;
+  bool skipped_ = false;  // the object that is looked at
+  Visit visit_[kPacketLanes];
+  int visits_ = 0;
+  Places places_;
+  alignas(64) float s_[kPacketLanes] = {}, t_[kPacketLanes] = {};  // within the lanes' cells
+  Group group_[kPacketLanes];
+  int groups_ = 0;
+  LaneMask unknown_ = 0;  // lanes in no cell
+  size_t next_unknown_ = 0;
+  Use use_;
+};
+
+}  // namespace linetree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

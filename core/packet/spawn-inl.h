@@ -1,0 +1,136 @@
+// Reflected and transmitted rays, in double: the operations of PathTracer (core/trace/path.cpp) in
+// their order.
+#if defined(LINETREE_CORE_PACKET_SPAWN_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LINETREE_CORE_PACKET_SPAWN_INL_H_
+#undef LINETREE_CORE_PACKET_SPAWN_INL_H_
+#else
+#define LINETREE_CORE_PACKET_SPAWN_INL_H_
+#endif
+
+#include <bit>
+
+#include "core/packet/lanes-inl.h"
+#include "core/packet/packet_scene.h"
+#include "core/packet/packet_workspace.h"
+#include "core/packet/topology.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace linetree::HWY_NAMESPACE {
+
+class Spawner {
+ public:
+  HWY_INLINE Spawner(const PacketScene& scene, const PathLimits& limits, PacketWorkspace& workspace,
+                     PacketCounts& counts)
+      : scene_(scene), limits_(limits), workspace_(workspace), counts_(counts) {}
+
+  // The rays go to the queues of level depth mod 2. Sets the lanes that reflect totally.
+  void Spawn(const PathPacket& packet, const PacketHits& hits, int depth, LaneMask& total) {
+    if (depth >= limits_.max_depth) return;
+    level_ = depth % 2;
+    for (LaneMask left = hits.hit; left != 0;) {
+      const int32_t object = hits.object[std::countr_zero(left)];
+      const LaneMask same = BitsOf(Ints::Load(hits.object) == Ints::All(object)) & left;
+      left &= ~same;
+      if (scene_.materials()
+              .spawns[static_cast<size_t>(scene_.material_of()[static_cast<size_t>(object)])] !=
+          0) {
+        SpawnFrom(packet, hits, object, same, total);
+      }
+    }
+  }
+
+ private:
+  // Lanes whose branch with coefficient k is cast: PathLimits::Allow.
+  HWY_INLINE LaneMask Allowed(const PathPacket& packet, const Rgb& k, LaneMask lanes) const {
+    if (IsBlack(k)) return 0;
+    const Doubles weight = Doubles::Load(packet.weight) * Doubles::All(MaxChannel(k));
+    return BitsOf(weight >= Doubles::All(limits_.min_weight)) & lanes;
+  }
+
+  void SpawnFrom(const PathPacket& packet, const PacketHits& hits, int32_t object, LaneMask lanes,
+                 LaneMask& total) {
+    const Material& material = scene_.scene().MaterialOf(object);
+    const Shape& shape = scene_.scene().objects[static_cast<size_t>(object)].shape;
+    const WideVectors d = Load(packet.rays.direction), n = Load(hits.normal);
+    const LaneMask asked = Allowed(packet, material.transmit, lanes);
+    LaneMask reflects_all = 0;
+    WideVectors through = d;
+    if (asked != 0 && IsSolid(shape)) {
+      through = Refract(d, n, hits, object, material.ior, asked, reflects_all);
+    }
+    total |= reflects_all;
+    const LaneMask reflects = Allowed(packet, material.reflect, lanes) & ~reflects_all;
+    if ((reflects | reflects_all) != 0) {
+      const Doubles twice = Doubles::All(2) * Dot(n, d);
+      const WideVectors mirrored = d - n * twice;
+      Append(packet, hits, mirrored, reflects, Branch::kReflected, hits.inside, material.reflect);
+      Append(packet, hits, mirrored, reflects_all, Branch::kReflected, hits.inside, {1, 1, 1});
+    }
+    const LaneMask into = IsPlanar(shape) ? 0 : ~hits.inside;
+    Append(packet, hits, through, asked & ~reflects_all, Branch::kTransmitted, into,
+           material.transmit);
+  }
+
+  // As Refracted, with the indices that each lane finds; sets the lanes of total reflection.
+  HWY_INLINE WideVectors Refract(const WideVectors& d, const WideVectors& n, const PacketHits& hits,
+                                 int32_t object, double ior, LaneMask lanes,
+                                 LaneMask& total) const {
+    const Media& media = scene_.tracer().media();
+    alignas(64) double around[kPacketLanes];
+    for (double& x : around) x = 1;
+    if (!media.Neighbours(object).empty()) {
+      for (LaneMask left = lanes; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        around[lane] = media.IorAround(scene_.scene(), object, hits.point.At(lane));
+      }
+    }
+    const WideMask inside = TruthOf<double>(hits.inside);
+    const Doubles outer = Doubles::Load(around), inner = Doubles::All(ior), one = Doubles::All(1);
+    const Doubles from = Select(inside, inner, outer), into = Select(inside, outer, inner);
+    const Doubles eta = from / into;
+    const Doubles cosine = -Dot(n, d);
+    const Doubles squared = one - eta * eta * (one - cosine * cosine);
+    const WideMask bends = Without(one <= one, from == into);
+    total = BitsOf(bends & (squared < Doubles::All(0))) & lanes;
+    const WideVectors bent = d * eta + n * (eta * cosine - Sqrt(squared));
+    return Select(bends, bent, d);
+  }
+
+  // `inside`: lanes whose rays leave into the inside.
+  void Append(const PathPacket& packet, const PacketHits& hits, const WideVectors& direction,
+              LaneMask lanes, Branch branch, LaneMask inside, const Rgb& k) {
+    if (lanes == 0) return;
+    const bool reflected = branch == Branch::kReflected;
+    (reflected ? counts_.rays.reflected : counts_.rays.refracted) +=
+        static_cast<uint64_t>(std::popcount(lanes));
+    PacketVectors directions;
+    Store(direction, directions);
+    const double largest = MaxChannel(k);
+    const float factor[3] = {static_cast<float>(k.r), static_cast<float>(k.g),
+                             static_cast<float>(k.b)};
+    PacketWorkspace::Queue& queue = workspace_.queue(level_, reflected ? 0 : 1);
+    for (LaneMask left = lanes; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      PathPacket& to = queue.Room();
+      const int at = queue.lanes++;
+      const Side side = (inside >> lane & 1) != 0 ? Side::kInside : Side::kOutside;
+      to.rays.SetRay(at, hits.point.At(lane), directions.At(lane),
+                     {hits.object[lane], hits.face[lane], side});
+      to.weight[at] = packet.weight[lane] * largest;
+      for (int c = 0; c < 3; ++c) to.throughput[c][at] = packet.throughput[c][lane] * factor[c];
+      to.pixel[at] = packet.pixel[lane];
+      to.path[at] = PathOf(packet.path[lane], branch);
+    }
+  }
+
+  const PacketScene& scene_;
+  const PathLimits& limits_;
+  PacketWorkspace& workspace_;
+  PacketCounts& counts_;
+  int level_ = 0;
+};
+
+}  // namespace linetree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,30 @@
+// Whole frames by packets: blocks of 32 x 32 pixels, classical or with what the surface trees know.
+//
+// Cached frames go in waves: one tile (4 x 4 pixels) of every block, then four more, then the
+// rest; between them the trees grow where rays have gone. Waves see the trees only between builds,
+// so a picture does not depend on the number of threads; where the first wave finds nothing to
+// build, the rest follows at once.
+#pragma once
+
+#include "absl/status/status.h"
+#include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/packet/packet_tracer.h"
+#include "core/render/answer_rays.h"
+#include "core/render/frame.h"
+#include "core/render/options.h"
+#include "core/render/worker_pool.h"
+
+namespace linetree {
+
+// Highlights as sharp as the scene's sharpest: what PacketRadianceRounding wants to know.
+double LargestExponent(const Scene& scene);
+
+// Fills in the frame's pixels and adds to its stats. Under Mode::kCached the trees of `surfaces`
+// are asked and grow; sums of diffuse light are used where they leave room for
+// PacketRadianceRounding. CANCELLED when `cancel` said so (what was built stays).
+absl::Status RenderBlocks(const PacketTracer& packets, SurfaceCache& surfaces, FramePlan& plan,
+                          const RenderOptions& options, const EyeRays& eye_rays, WorkerPool& pool,
+                          const CancelToken* cancel, const Progress& progress, Frame& frame);
+
+}  // namespace linetree
