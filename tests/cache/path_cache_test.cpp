@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/trace/shade.h"
 #include "tests/support/random_scene.h"
 
@@ -142,6 +144,86 @@ TEST_F(PathCacheTest, VerdictsAddUpToCells) {
     for (const uint64_t cells : of_object) sum += cells;
   }
   EXPECT_EQ(sum, cache.CellCount());
+}
+
+TEST_F(PathCacheTest, AReaderTakesOnlySoManySamples) {
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  for (uint64_t i = 0; i < 2; ++i) Refine(cache, i, 100);
+  std::vector<PathCache::Sample> samples;
+  Use(cache, Rays(1, static_cast<int>(kMaxSamples) + 500), {}, &samples);
+  EXPECT_EQ(samples.size(), kMaxSamples);
+  Use(cache, Rays(2, 10), {}, &samples);
+  EXPECT_EQ(samples.size(), kMaxSamples) << "of another reader into the same store";
+}
+
+TEST_F(PathCacheTest, ACancelledRefinementKeepsWhatItBuilt) {
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  for (uint64_t i = 0; i < 2; ++i) Refine(cache, i, 100);
+  std::vector<PathCache::Sample> samples;
+  Use(cache, Rays(3, 500), {}, &samples);
+  // The loop stops after three cells and runs no body again.
+  int left = 3;
+  const ParallelLoop cut_short = [&](size_t count, const std::function<void(size_t)>& body) {
+    for (size_t i = 0; i < count && left > 0; ++i, --left) body(i);
+  };
+  const uint64_t before = cache.CellCount();
+  const uint64_t certified = cache.Refine({}, samples, 100, cut_short);
+  EXPECT_GE(certified, 1u);
+  EXPECT_LE(certified, 3u);
+  EXPECT_EQ(cache.CellCount(), before + certified);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  // What was left out comes with the next one.
+  EXPECT_GT(Refine(cache, 3, 100), 3u);
+}
+
+TEST_F(PathCacheTest, ATinyBudgetDropsWholeTrees) {
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  for (uint64_t i = 0; i < 6; ++i) Refine(cache, i, 300);
+  ASSERT_GT(cache.CellCount(), 20u);
+  cache.SetMemoryBytes(200);
+  EXPECT_EQ(cache.CellCount(), 0u);
+  EXPECT_LE(cache.ByteSize(), 200u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  cache.SetMemoryBytes(10'000'000);
+  for (uint64_t i = 0; i < 4; ++i) Refine(cache, i, 300);
+  EXPECT_GT(cache.CellCount(), 20u);
+}
+
+TEST_F(PathCacheTest, OfTooManyLimitsThoseUsedLongestAgoGo) {
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  const auto limits_of = [](size_t i) { return PathLimits{static_cast<int>(2 + i), 0.01}; };
+  const auto learn = [&](const PathLimits& limits) {
+    for (uint64_t i = 0; i < 3; ++i) {
+      std::vector<PathCache::Sample> samples;
+      Use(cache, Rays(i, 300), limits, &samples);
+      cache.Refine(limits, samples, 100, kSerial);
+    }
+  };
+  for (size_t i = 0; i < kMaxPathForests; ++i) learn(limits_of(i));
+  learn(limits_of(0));  // the oldest is now the second
+  learn(limits_of(kMaxPathForests));
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  EXPECT_EQ(Use(cache, Rays(9, 100), limits_of(1), nullptr), 0);
+  EXPECT_GT(Use(cache, Rays(9, 100), limits_of(0), nullptr), 50);
+  EXPECT_GT(Use(cache, Rays(9, 100), limits_of(kMaxPathForests), nullptr), 50);
+}
+
+TEST_F(PathCacheTest, WhatFloatsCannotHoldIsNotInterpolated) {
+  scene_.lights[0].irradiance = {1e39, 1e39, 1e39};
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  for (uint64_t i = 0; i < 5; ++i) Refine(cache, i, 300);
+  const PathCache::Reader reader(cache, {}, nullptr);
+  int listed = 0;
+  for (const Ray& ray : Rays(77, 500)) {
+    const Hit hit = tracer_.Intersect(ray.origin, ray.direction, {});
+    RayCounts counts;
+    const Rgb classical = tracer_.RadianceFromHit(hit, ray.origin, ray.direction, {}, counts);
+    if (!(classical.r > std::numeric_limits<float>::max())) continue;  // reflects the sky
+    Rgb radiance;
+    EXPECT_NE(reader.Interpolate(hit, ray.direction, 1, radiance), Verdict::kCertified);
+    listed += reader.Find(hit, ray.direction) != nullptr ? 1 : 0;
+  }
+  EXPECT_GT(listed, 100) << "where rays go is known all the same";
 }
 
 }  // namespace

@@ -86,5 +86,35 @@ TEST_F(SurfaceCacheTest, ASmallerBudgetEvictsAndALargerOneGrowsAgain) {
   EXPECT_EQ(cache.CellCount(), 0u);
 }
 
+TEST_F(SurfaceCacheTest, ATinyBudgetDropsWholeTrees) {
+  SurfaceCache cache(tracer_, 4'000'000);
+  for (uint64_t round = 0; round < 3; ++round) {
+    Use(cache, round, 500);
+    cache.Refine(100, kSerial);
+  }
+  ASSERT_GT(cache.CellCount(), 0u);
+  cache.SetMemoryBytes(500);
+  EXPECT_EQ(cache.CellCount(), 0u);
+  EXPECT_LE(cache.ByteSize(), 500u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  EXPECT_EQ(Use(cache, 1, 100), 0);
+}
+
+TEST_F(SurfaceCacheTest, ACancelledRefinementKeepsWhatItBuilt) {
+  SurfaceCache cache(tracer_, 10'000'000);
+  Use(cache, 1, 500);
+  cache.Refine(100, kSerial);
+  Use(cache, 1, 500);
+  int left = 2;
+  const ParallelLoop cut_short = [&](size_t count, const std::function<void(size_t)>& body) {
+    for (size_t i = 0; i < count && left > 0; ++i, --left) body(i);
+  };
+  EXPECT_EQ(cache.Refine(100, cut_short), 2u);
+  EXPECT_EQ(cache.CellCount(), 2u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  Use(cache, 1, 500);
+  EXPECT_GT(cache.Refine(100, kSerial), 2u);
+}
+
 }  // namespace
 }  // namespace linetree
