@@ -7,6 +7,7 @@
 #include "core/trace/tracer.h"
 #include "core/tree/candidate_search.h"
 #include "core/tree/separation.h"
+#include "tests/support/sanitizer_share.h"
 #include "tests/support/scene_builder.h"
 
 namespace linetree {
@@ -156,7 +157,7 @@ bool Check(const Case& c, double s, double t, Rng& rng, Tally& tally) {
 Tally Compare(Kind kind, int cases, uint64_t seed) {
   Rng rng(seed);
   Tally tally;
-  for (int i = 0; i < cases; ++i) {
+  for (int i = 0; i < cases / test::kSanitizerShare; ++i) {
     const Case c(kind, rng);
     ++tally.cases;
     if (!c.HasFunction()) continue;
