@@ -1,4 +1,5 @@
-// linetree bench speed: the packet tracer against the scalar one, on classical frames.
+// linetree bench speed: classical frames by packets against those of the scalar tracer, and cached
+// frames by packets against classical ones.
 #include <algorithm>
 #include <array>
 #include <filesystem>

@@ -105,11 +105,7 @@ SpeedStudy StudySpeed(const Tracer& tracer, const PacketTracer& packets, const C
   SpeedStudy study;
   study.objects = tracer.scene().objects.size();
   study.lights = tracer.scene().lights.size();
-  double exponent = 0;
-  for (const Material& material : tracer.scene().materials) {
-    if (!IsBlack(material.specular)) exponent = std::max(exponent, material.exponent);
-  }
-  study.allowed_difference = PacketRadianceRounding(exponent);
+  study.allowed_difference = packets.radiance_rounding();
   Racer racer(tracer, packets, camera, options);
   racer.Compare(study);
   std::vector<double> scalar, packet, ratio;

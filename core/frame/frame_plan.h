@@ -110,7 +110,6 @@ class FramePlan {
   // How often it was decided.
   uint32_t decisions() const { return decisions_; }
 
-  uint64_t ByteSize() const { return accounts_.capacity() * sizeof(Account); }
   size_t CountSkipped() const {
     size_t count = 0;
     for (size_t object = 0; object < accounts_.size(); ++object) count += Skips(object) ? 1 : 0;

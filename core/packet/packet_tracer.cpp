@@ -18,6 +18,14 @@ void ForLanes(LaneMask lanes, Fn&& fn) {
   for (; lanes != 0; lanes &= lanes - 1) fn(std::countr_zero(lanes));
 }
 
+double LargestExponent(const Scene& scene) {
+  double largest = 0;
+  for (const Material& material : scene.materials) {
+    if (!IsBlack(material.specular)) largest = std::max(largest, material.exponent);
+  }
+  return largest;
+}
+
 // The scalar twins, for scenes that do not fit float.
 void FindHitsScalar(const Tracer& tracer, const PacketRays& rays, PacketHits& hits,
                     PacketCounts& counts) {
@@ -107,7 +115,9 @@ void RenderScalar(const Tracer& tracer, const BlockTask& task, PacketCounts& cou
 }  // namespace
 
 PacketTracer::PacketTracer(const Tracer& tracer)
-    : tracer_(tracer), scene_(std::make_unique<const PacketScene>(tracer)) {}
+    : tracer_(tracer),
+      scene_(std::make_unique<const PacketScene>(tracer)),
+      radiance_rounding_(PacketRadianceRounding(LargestExponent(tracer.scene()))) {}
 PacketTracer::~PacketTracer() = default;
 
 size_t PacketTracer::ByteSize() const { return sizeof(PacketScene) + scene_->ByteSize(); }

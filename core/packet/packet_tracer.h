@@ -55,6 +55,8 @@ class PacketTracer {
   size_t ByteSize() const;
   // Whether the scene fits float; if not, every lane is traced by the scalar tracer.
   bool IsWide() const;
+  // PacketRadianceRounding of the scene's sharpest highlight.
+  double radiance_rounding() const { return radiance_rounding_; }
 
   // The eye rays of sixteen pixels, 4 by 4, of which (column, row) is the top left one; those
   // outside the image are not active. Bit by bit EyeRays::ThroughPixel.
@@ -90,6 +92,7 @@ class PacketTracer {
  private:
   const Tracer& tracer_;
   const std::unique_ptr<const PacketScene> scene_;
+  const double radiance_rounding_;
 };
 
 }  // namespace linetree

@@ -97,10 +97,7 @@ class Blocks {
             uses_.data()};
   }
   // What sums may be off by.
-  double SumError() const {
-    return options_.max_relative_error -
-           PacketRadianceRounding(LargestExponent(packets_.tracer().scene()));
-  }
+  double SumError() const { return options_.max_relative_error - packets_.radiance_rounding(); }
 
   template <class Fn>
   void ForBlocks(double from, double to, Fn&& body);
@@ -249,14 +246,6 @@ void Blocks::StoreSources() {
 }
 
 }  // namespace
-
-double LargestExponent(const Scene& scene) {
-  double largest = 0;
-  for (const Material& material : scene.materials) {
-    if (!IsBlack(material.specular)) largest = std::max(largest, material.exponent);
-  }
-  return largest;
-}
 
 absl::Status RenderBlocks(const PacketTracer& packets, SurfaceCache& surfaces, FramePlan& plan,
                           const RenderOptions& options, const EyeRays& eye_rays, WorkerPool& pool,

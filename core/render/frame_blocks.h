@@ -17,12 +17,9 @@
 
 namespace linetree {
 
-// Highlights as sharp as the scene's sharpest: what PacketRadianceRounding wants to know.
-double LargestExponent(const Scene& scene);
-
 // Fills in the frame's pixels and adds to its stats. Under Mode::kCached the trees of `surfaces`
 // are asked and grow; sums of diffuse light are used where they leave room for
-// PacketRadianceRounding. CANCELLED when `cancel` said so (what was built stays).
+// the packets' own rounding. CANCELLED when `cancel` said so (what was built stays).
 absl::Status RenderBlocks(const PacketTracer& packets, SurfaceCache& surfaces, FramePlan& plan,
                           const RenderOptions& options, const EyeRays& eye_rays, WorkerPool& pool,
                           const CancelToken* cancel, const Progress& progress, Frame& frame);

@@ -97,7 +97,6 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
     : scene_(std::move(scene)),
       limits_(limits),
       tracer_(*scene_),
-      packets_(tracer_),
       cache_(tracer_, RadianceShare(cache_options)),
       surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
@@ -110,9 +109,15 @@ void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
   paths_.SetMemoryBytes(shares.paths);
 }
 
+const PacketTracer& SceneHost::packets() const {
+  std::call_once(packets_made_,
+                 [this] { packets_ = std::make_unique<const PacketTracer>(tracer_); });
+  return *packets_;
+}
+
 bool SceneHost::GoesByPackets(const RenderOptions& options) const {
   const bool for_linetrees = options.mode == Mode::kCached && options.judge == JudgeKind::kPaper;
-  return options.lanes == Lanes::kSimd && packets_.IsWide() && !for_linetrees;
+  return options.lanes == Lanes::kSimd && !for_linetrees && packets().IsWide();
 }
 
 absl::Status SceneHost::RenderRays(const FrameRequest& request, WorkerPool& pool,
@@ -156,8 +161,8 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
   Frame frame = EmptyFrame(*scene_, request);
   absl::Status status;
   if (GoesByPackets(request.options)) {
-    frame.lane_rounding = PacketRadianceRounding(LargestExponent(*scene_));
-    status = RenderBlocks(packets_, surfaces_, plan_, request.options,
+    frame.lane_rounding = packets().radiance_rounding();
+    status = RenderBlocks(packets(), surfaces_, plan_, request.options,
                           EyeRays(request.camera, request.width, request.height), pool, cancel,
                           progress, frame);
     frame.stats.cache_bytes = CacheBytes();

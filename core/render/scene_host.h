@@ -54,7 +54,8 @@ class SceneHost {
 
   const Scene& scene() const { return *scene_; }
   const Tracer& tracer() const { return tracer_; }
-  const PacketTracer& packets() const { return packets_; }
+  // Made when it is first asked for.
+  const PacketTracer& packets() const;
   RadianceCache& cache() { return cache_; }
   SurfaceCache& surfaces() { return surfaces_; }
   PathCache& paths() { return paths_; }
@@ -87,7 +88,8 @@ class SceneHost {
   const std::shared_ptr<const Scene> scene_;
   const RenderLimits limits_;
   const Tracer tracer_;
-  const PacketTracer packets_;
+  mutable std::once_flag packets_made_;
+  mutable std::unique_ptr<const PacketTracer> packets_;
   RadianceCache cache_;
   SurfaceCache surfaces_;
   PathCache paths_;

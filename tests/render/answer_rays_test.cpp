@@ -7,6 +7,7 @@
 
 #include "core/render/scene_host.h"
 #include "tests/support/demo_scenes.h"
+#include "tests/support/render_frame.h"
 
 namespace linetree {
 namespace {
@@ -20,12 +21,6 @@ FrameRequest Request(const Scene& scene, Mode mode, double epsilon) {
   request.options.judge = JudgeKind::kPaper;
   request.options.max_relative_error = epsilon;
   return request;
-}
-
-Frame Render(SceneHost& host, const FrameRequest& request, WorkerPool& pool) {
-  auto frame = host.RenderFrame(request, pool);
-  EXPECT_TRUE(frame.ok()) << frame.status();
-  return *std::move(frame);
 }
 
 // Pixels beyond epsilon; the paper's judge may have a few, and none where it is certain.
@@ -56,13 +51,13 @@ TEST(AnswerRaysTest, CachedAgreesWithClassicalColdAndWarm) {
   const auto scene = test::BallsOnFloor(5, 60);
   WorkerPool pool(2);
   SceneHost host(scene);
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical, 0), pool);
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
   EXPECT_EQ(classical.stats.interpolated, 0u);
   ExpectCountsAddUp(classical.stats);
   for (const double epsilon : {0.5, 0.1}) {
     SceneHost fresh(scene);
     for (int warm = 0; warm < 2; ++warm) {
-      const Frame cached = Render(fresh, Request(*scene, Mode::kCached, epsilon), pool);
+      const Frame cached = test::RenderFrame(fresh, Request(*scene, Mode::kCached, epsilon), pool);
       ExpectCountsAddUp(cached.stats);
       EXPECT_GT(cached.stats.interpolated, cached.stats.pixels / 5) << "epsilon " << epsilon;
       EXPECT_LE(Beyond(cached, classical, epsilon, RadianceFloor(*scene)), 5u);
@@ -77,9 +72,9 @@ TEST(AnswerRaysTest, EpsilonZeroIsClassicalBitForBit) {
   const auto scene = test::BallsOnFloor(5, 61);
   WorkerPool pool(2);
   SceneHost host(scene);
-  Render(host, Request(*scene, Mode::kCached, 0.5), pool);  // whatever the cache holds
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical, 0), pool);
-  const Frame cached = Render(host, Request(*scene, Mode::kCached, 0), pool);
+  test::RenderFrame(host, Request(*scene, Mode::kCached, 0.5), pool);  // whatever the cache holds
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
+  const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached, 0), pool);
   EXPECT_EQ(cached.radiance, classical.radiance);
   EXPECT_EQ(cached.stats.cells_tried, 0u);
 }
@@ -90,7 +85,7 @@ TEST(AnswerRaysTest, ThreadsChangeNothing) {
   for (const int threads : {1, 2, 7}) {
     WorkerPool pool(threads);
     SceneHost host(scene);
-    frames.push_back(Render(host, Request(*scene, Mode::kCached, 0.2), pool));
+    frames.push_back(test::RenderFrame(host, Request(*scene, Mode::kCached, 0.2), pool));
     const Frame& first = frames.front();
     const Frame& frame = frames.back();
     EXPECT_EQ(frame.radiance, first.radiance) << threads << " threads";
@@ -106,7 +101,7 @@ TEST(AnswerRaysTest, ASmallBudgetCostsTimeNotAccuracy) {
   WorkerPool pool(2);
   const Frame classical = [&] {
     SceneHost host(scene);
-    return Render(host, Request(*scene, Mode::kClassical, 0), pool);
+    return test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
   }();
   for (const uint64_t budget : {0, 4'000, 100'000, 400'000}) {
     CacheOptions options;
@@ -114,7 +109,7 @@ TEST(AnswerRaysTest, ASmallBudgetCostsTimeNotAccuracy) {
     SceneHost host(scene, options);
     for (int i = 0; i < 3; ++i) {
       FrameRequest request = Request(*scene, Mode::kCached, 0.2);
-      const Frame frame = Render(host, request, pool);
+      const Frame frame = test::RenderFrame(host, request, pool);
       EXPECT_LE(frame.stats.cache_bytes, budget);
       EXPECT_LE(Beyond(frame, classical, 0.2, RadianceFloor(*scene)), 5u);
       ExpectCountsAddUp(frame.stats);
@@ -128,13 +123,13 @@ TEST(AnswerRaysTest, ManyClientsAtOnceStayWithinEpsilon) {
   CacheOptions options;
   options.memory_bytes = 1'000'000;
   SceneHost host(scene, options);
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical, 0), pool);
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
   std::vector<std::thread> clients;
   for (int c = 0; c < 4; ++c) {
     clients.emplace_back([&, c] {
       const double epsilon = c % 2 == 0 ? 0.4 : 0.05;
       for (int i = 0; i < 3; ++i) {
-        const Frame frame = Render(host, Request(*scene, Mode::kCached, epsilon), pool);
+        const Frame frame = test::RenderFrame(host, Request(*scene, Mode::kCached, epsilon), pool);
         EXPECT_LE(Beyond(frame, classical, epsilon, RadianceFloor(*scene)), 5u);
         ExpectCountsAddUp(frame.stats);
       }
@@ -152,8 +147,8 @@ TEST(AnswerRaysTest, EyesInsideObjectsAreServed) {
   scene->objects.push_back(test::ObjectOf(test::Frustum({0, -14, 3}, {0, -4, 3}, 3, 3, true)));
   WorkerPool pool(2);
   SceneHost host(scene);
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical, 0), pool);
-  const Frame cached = Render(host, Request(*scene, Mode::kCached, 0.1), pool);
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
+  const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached, 0.1), pool);
   EXPECT_LE(Beyond(cached, classical, 0.1, RadianceFloor(*scene)), 5u);
 }
 

@@ -7,6 +7,7 @@
 #include "core/render/scene_host.h"
 #include "tests/support/demo_scenes.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/render_frame.h"
 
 namespace linetree {
 namespace {
@@ -21,12 +22,6 @@ FrameRequest Request(const Scene& scene, Mode mode, int size = 96) {
   return request;
 }
 
-Frame Render(SceneHost& host, const FrameRequest& request, WorkerPool& pool) {
-  auto frame = host.RenderFrame(request, pool);
-  EXPECT_TRUE(frame.ok()) << frame.status();
-  return *std::move(frame);
-}
-
 TEST(CertifiedTest, ColdWarmAndEvictedFramesAreClassicalBitForBit) {
   const auto scene = test::BallsOnFloor(12, 80);
   WorkerPool pool(2);
@@ -34,9 +29,9 @@ TEST(CertifiedTest, ColdWarmAndEvictedFramesAreClassicalBitForBit) {
     CacheOptions options;
     options.memory_bytes = budget;
     SceneHost host(scene, options);
-    const Frame classical = Render(host, Request(*scene, Mode::kClassical), pool);
+    const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical), pool);
     for (int repeat = 0; repeat < 3; ++repeat) {
-      const Frame cached = Render(host, Request(*scene, Mode::kCached), pool);
+      const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached), pool);
       ASSERT_EQ(cached.radiance, classical.radiance) << "budget " << budget;
       EXPECT_LE(cached.stats.cache_bytes, budget);
       EXPECT_EQ(host.surfaces().ByteSize(), host.surfaces().CountBytes());
@@ -54,9 +49,9 @@ TEST(CertifiedTest, AWarmFrameSearchesTheSceneMuchLess) {
   const auto scene = test::BallsOnFloor(12, 81);
   WorkerPool pool(2);
   SceneHost host(scene);
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical, 256), pool);
-  Render(host, Request(*scene, Mode::kCached, 256), pool);
-  const Frame warm = Render(host, Request(*scene, Mode::kCached, 256), pool);
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 256), pool);
+  test::RenderFrame(host, Request(*scene, Mode::kCached, 256), pool);
+  const Frame warm = test::RenderFrame(host, Request(*scene, Mode::kCached, 256), pool);
   EXPECT_EQ(warm.radiance, classical.radiance);
   EXPECT_GT(warm.stats.base.listed, warm.stats.base.shadow * 9 / 10);
   EXPECT_LT(warm.stats.base.intersect, classical.stats.base.intersect / 2);
@@ -79,9 +74,9 @@ TEST(CertifiedTest, RandomScenesAreClassicalBitForBit) {
   for (uint64_t seed = 1; seed <= 12; ++seed) {
     const auto scene = CrowdedScene(seed);
     SceneHost host(scene);
-    const Frame classical = Render(host, Request(*scene, Mode::kClassical, 128), pool);
+    const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 128), pool);
     for (int repeat = 0; repeat < 2; ++repeat) {
-      const Frame cached = Render(host, Request(*scene, Mode::kCached, 128), pool);
+      const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached, 128), pool);
       ASSERT_EQ(cached.radiance, classical.radiance) << "seed " << seed;
     }
     EXPECT_GT(host.surfaces().CellCount(), 10u) << "seed " << seed;
@@ -122,11 +117,11 @@ TEST(CertifiedTest, InterpolatedFramesAreWithinEpsilon) {
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const auto scene = MirrorsAndGlass(seed);
     SceneHost host(scene);
-    const Frame classical = Render(host, Request(*scene, Mode::kClassical, 256), pool);
+    const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 256), pool);
     for (const double epsilon : {0.1, 0.1, 0.02, 0.0, 0.25}) {
       FrameRequest request = Request(*scene, Mode::kCached, 256);
       request.options.max_relative_error = epsilon;
-      const Frame cached = Render(host, request, pool);
+      const Frame cached = test::RenderFrame(host, request, pool);
       interpolated += cached.stats.interpolated;
       listed += cached.stats.base.listed_branches;
       for (size_t i = 0; i < cached.radiance.size(); ++i) {
@@ -149,12 +144,12 @@ TEST(CertifiedTest, ThreadsAndClientsChangeNothing) {
   options.memory_bytes = 400'000;
   SceneHost host(scene, options);
   WorkerPool pool(3);
-  const Frame classical = Render(host, Request(*scene, Mode::kClassical), pool);
+  const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical), pool);
   std::vector<std::thread> clients;
   for (int c = 0; c < 4; ++c) {
     clients.emplace_back([&] {
       for (int i = 0; i < 4; ++i) {
-        const Frame cached = Render(host, Request(*scene, Mode::kCached), pool);
+        const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached), pool);
         EXPECT_EQ(cached.radiance, classical.radiance);
       }
     });

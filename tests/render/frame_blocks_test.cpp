@@ -9,7 +9,7 @@
 #include "core/render/scene_host.h"
 #include "tests/support/demo_scenes.h"
 #include "tests/support/random_scene.h"
-#include "tests/support/sanitizer_share.h"
+#include "tests/support/render_frame.h"
 
 namespace linetree {
 namespace {
@@ -23,12 +23,6 @@ FrameRequest Request(const Scene& scene, Mode mode, double epsilon, int size = 9
   request.options.lanes = Lanes::kSimd;
   request.options.max_relative_error = epsilon;
   return request;
-}
-
-Frame Render(SceneHost& host, const FrameRequest& request, WorkerPool& pool) {
-  auto frame = host.RenderFrame(request, pool);
-  EXPECT_TRUE(frame.ok()) << frame.status();
-  return *std::move(frame);
 }
 
 CacheOptions AlwaysAsk() {
@@ -48,12 +42,12 @@ std::shared_ptr<const Scene> RandomScene(uint64_t seed) {
 TEST(FrameBlocksTest, AtEpsilonZeroTheyAreClassicalByteByByte) {
   WorkerPool pool(2);
   uint64_t listed = 0, replayed = 0;
-  for (uint64_t seed = 0; seed < 40 / test::kSanitizerShare; ++seed) {
+  for (uint64_t seed = 0; seed < 40; ++seed) {
     const auto scene = RandomScene(seed);
     SceneHost host(scene, AlwaysAsk());
-    const Frame classical = Render(host, Request(*scene, Mode::kClassical, 0), pool);
+    const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
     for (int repeat = 0; repeat < 3; ++repeat) {
-      const Frame cached = Render(host, Request(*scene, Mode::kCached, 0), pool);
+      const Frame cached = test::RenderFrame(host, Request(*scene, Mode::kCached, 0), pool);
       ASSERT_EQ(cached.radiance, classical.radiance) << "scene " << seed;
       ASSERT_EQ(cached.object, classical.object);
       ASSERT_EQ(cached.depth, classical.depth);
@@ -64,15 +58,15 @@ TEST(FrameBlocksTest, AtEpsilonZeroTheyAreClassicalByteByByte) {
       replayed += cached.stats.replayed;
     }
   }
-  EXPECT_GT(listed, 100'000u / test::kSanitizerShare);
-  EXPECT_GT(replayed, 30'000u / test::kSanitizerShare);
+  EXPECT_GT(listed, 100'000u);
+  EXPECT_GT(replayed, 30'000u);
 }
 
 TEST(FrameBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
   WorkerPool pool(2);
   uint64_t interpolated = 0;
   double largest = 0;
-  for (uint64_t seed = 0; seed < 40 / test::kSanitizerShare; ++seed) {
+  for (uint64_t seed = 0; seed < 40; ++seed) {
     auto lit = std::make_shared<Scene>(*RandomScene(seed));
     test::Random random(seed);
     for (int i = 0; i < 6; ++i) {
@@ -83,12 +77,12 @@ TEST(FrameBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
     FrameRequest reference = Request(*scene, Mode::kClassical, 0);
     reference.options.lanes = Lanes::kScalar;
     SceneHost host(scene, AlwaysAsk());
-    const Frame classical = Render(host, reference, pool);
+    const Frame classical = test::RenderFrame(host, reference, pool);
     EXPECT_EQ(classical.lane_rounding, 0);
     for (const double epsilon : {0.25, 0.02, 1e-7}) {
       Frame cached;
       for (int repeat = 0; repeat < 2; ++repeat) {
-        cached = Render(host, Request(*scene, Mode::kCached, epsilon), pool);
+        cached = test::RenderFrame(host, Request(*scene, Mode::kCached, epsilon), pool);
       }
       const double allowed = epsilon + cached.lane_rounding;
       EXPECT_GT(cached.lane_rounding, 0);
@@ -105,7 +99,7 @@ TEST(FrameBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
       EXPECT_EQ(cached.stats.interpolated, 0u) << "no room for sums";
     }
   }
-  EXPECT_GT(interpolated, 3'000u / test::kSanitizerShare);
+  EXPECT_GT(interpolated, 3'000u);
   EXPECT_GT(largest, 1e-4) << "sums were used";
 }
 
@@ -117,7 +111,7 @@ TEST(FrameBlocksTest, ThreadsChangeNothing) {
     SceneHost host(scene, AlwaysAsk());
     Frame& frame = frames[threads == 1 ? 0 : 1];
     for (int repeat = 0; repeat < 3; ++repeat) {
-      frame = Render(host, Request(*scene, Mode::kCached, 0.1, 200), pool);
+      frame = test::RenderFrame(host, Request(*scene, Mode::kCached, 0.1, 200), pool);
     }
   }
   EXPECT_EQ(frames[0].radiance, frames[1].radiance);
@@ -131,7 +125,8 @@ TEST(FrameBlocksTest, SourcesAddUp) {
   WorkerPool pool(2);
   SceneHost host(scene, AlwaysAsk());
   for (int repeat = 0; repeat < 3; ++repeat) {
-    const FrameStats stats = Render(host, Request(*scene, Mode::kCached, 0.1, 200), pool).stats;
+    const FrameStats stats =
+        test::RenderFrame(host, Request(*scene, Mode::kCached, 0.1, 200), pool).stats;
     EXPECT_EQ(stats.pixels, 200u * 193u);
     EXPECT_EQ(stats.interpolated + stats.traced + stats.background, stats.pixels);
     EXPECT_LE(stats.replayed + stats.residual, stats.traced);
@@ -139,7 +134,8 @@ TEST(FrameBlocksTest, SourcesAddUp) {
     for (const uint64_t count : stats.verdicts) verdicts += count;
     EXPECT_EQ(verdicts, stats.pixels);
   }
-  const FrameStats classical = Render(host, Request(*scene, Mode::kClassical, 0, 200), pool).stats;
+  const FrameStats classical =
+      test::RenderFrame(host, Request(*scene, Mode::kClassical, 0, 200), pool).stats;
   EXPECT_EQ(classical.traced + classical.background, classical.pixels);
   EXPECT_EQ(classical.replayed + classical.residual + classical.base.listed, 0u);
 }
@@ -152,7 +148,8 @@ TEST(FrameBlocksTest, ThePlannerLooksAwayWhereNothingIsToBeSaved) {
   const auto cells_of = [&](SceneHost& host) {
     uint64_t cells = 0;
     for (int repeat = 0; repeat < 3; ++repeat) {
-      cells += Render(host, Request(*scene, Mode::kCached, 0.1, 200), pool).stats.cells_tried;
+      cells +=
+          test::RenderFrame(host, Request(*scene, Mode::kCached, 0.1, 200), pool).stats.cells_tried;
     }
     return cells;
   };
@@ -176,7 +173,7 @@ TEST(FrameBlocksTest, ScenesBeyondFloatAreTracedInDouble) {
   WorkerPool pool(1);
   SceneHost host(scene);
   EXPECT_FALSE(host.packets().IsWide());
-  const Frame frame = Render(host, Request(*scene, Mode::kClassical, 0), pool);
+  const Frame frame = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
   EXPECT_EQ(frame.lane_rounding, 0);
 }
 

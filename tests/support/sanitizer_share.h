@@ -5,7 +5,7 @@
 namespace linetree::test {
 
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-inline constexpr int kSanitizerShare = 8;
+inline constexpr int kSanitizerShare = 4;
 #else
 inline constexpr int kSanitizerShare = 1;
 #endif

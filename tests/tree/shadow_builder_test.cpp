@@ -192,7 +192,7 @@ TEST_P(ShadowBuilderTest, NeverContradictsTheTracer) {
             << " of them unknown, " << tally.border << " borders\n";
   EXPECT_GT(tally.functions, tally.cases / 4);
   EXPECT_GT(tally.decided, tally.cases / 10);
-  EXPECT_GT(tally.border, 1'000);
+  EXPECT_GT(tally.border, 1'000 / test::kSanitizerShare);
   EXPECT_LT(tally.unknown, tally.points / 200);
 }
 
