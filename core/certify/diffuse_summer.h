@@ -20,8 +20,9 @@
 
 namespace linetree {
 
-// With fewer lights on, evaluating them one by one is as fast.
-inline constexpr int kMinSummedLights = 3;
+// One light is enough: a tile of pixels on a flat face (see the frame path) needs nothing but the
+// sum then.
+inline constexpr int kMinSummedLights = 1;
 
 // A light whose own term may be off by a larger share is left out and evaluated exactly: mostly one
 // that is near. What is left in a sum is off by no more.

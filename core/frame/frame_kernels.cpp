@@ -45,7 +45,7 @@ void RenderFrameBlock(const PacketScene& scene, const BlockTask& task, uint64_t 
                       const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
                       PacketWorkspace& workspace, PacketCounts& counts) {
   CachedLights lights(scene, reader, plan, booking, workspace, counts);
-  RenderTiles(scene, task, tiles, lights, workspace, counts);
+  BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render(tiles);
 }
 #endif
 

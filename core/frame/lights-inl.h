@@ -12,9 +12,7 @@
 #include "core/cache/surface_cache.h"
 #include "core/frame/frame_plan.h"
 #include "core/frame/listed-inl.h"
-#include "core/frame/places-inl.h"
-#include "core/frame/sums-inl.h"
-#include "core/packet/follow-inl.h"
+#include "core/frame/sheet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
@@ -23,6 +21,8 @@ namespace linetree::HWY_NAMESPACE {
 // without the trees.
 class CachedLights {
  public:
+  static constexpr bool kHasSheets = true;
+
   HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
                           FramePlan& plan, bool booking, PacketWorkspace& workspace,
                           PacketCounts& counts)
@@ -32,16 +32,42 @@ class CachedLights {
         booking_(booking),
         workspace_(workspace),
         last_blockers_(workspace.LastBlockers(scene.lights().size())),
-        counts_(counts) {}
+        counts_(counts),
+        cells_(reader),
+        sheet_(scene, reader, cells_) {}
+  // Written down, because what is implicit is not compiled for this target.
+  HWY_INLINE ~CachedLights() {}
+
+  // Whether tiles of the block that see this face may be evaluated as a sheet.
+  HWY_INLINE bool OpenSheet(const VisibleFace& face, const EyeRays& eye_rays,
+                            const SquareBounds& block) {
+    if (face.object == asked_face_.object && face.code == asked_face_.code) return has_sheet_;
+    asked_face_ = face;
+    const auto object = static_cast<size_t>(face.object);
+    has_sheet_ = false;
+    if (booking_ || !(reader_.epsilon() > 0) || plan_.Skips(object)) return false;
+    const SurfaceTree* tree = reader_.TreeOf(object);
+    return has_sheet_ = tree != nullptr && sheet_.Open(*tree, face, eye_rays, block);
+  }
+  // One of those tiles; false: it can't.
+  HWY_INLINE bool EvaluateSheet(const PathPacket& packet, const Doubles& across, const Doubles& up,
+                                Floats radiance[3], Floats& depth) {
+    LaneUses uses;
+    const LaneMask lanes = packet.rays.active;
+    if (!sheet_.Evaluate(across, up, lanes, radiance, depth, uses)) return false;
+    MarkUses(packet, uses, workspace_);
+    const auto pixels = static_cast<uint64_t>(std::popcount(lanes));
+    counts_.rays.shade += pixels;
+    counts_.rays.summed += static_cast<uint64_t>(std::popcount(uses.summed));
+    return true;
+  }
 
   void Add(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
            const LaneMaterials& materials, LaneMask lanes, LightSum& sum) {
     if (!booking_ && SkipsAll(hits, lanes)) {
       SearchedLights(scene_, false, workspace_, counts_)
           .Add(packet, hits, at, materials, lanes, sum);
-      for (LaneMask left = lanes; left != 0; left &= left - 1) {
-        workspace_.uses()[packet.pixel[std::countr_zero(left)]] |= kSearched;
-      }
+      MarkUses(packet, {lanes, 0, 0}, workspace_);
       return;
     }
     groups_ = 0;
@@ -56,12 +82,7 @@ class CachedLights {
     use_.searched = unknown_;
     AddTasks(hits, at, materials, sum);
     if (booking_) Book(classical, lanes);
-    for (LaneMask left = lanes; left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      const auto bit = [lane](LaneMask mask) { return mask >> lane & 1; };
-      workspace_.uses()[packet.pixel[lane]] |= static_cast<uint8_t>(
-          bit(use_.searched) * kSearched | bit(use_.listed) * kListed | bit(use_.summed) * kSummed);
-    }
+    MarkUses(packet, use_, workspace_);
   }
 
  private:
@@ -70,17 +91,21 @@ class CachedLights {
     const CellLights* known = nullptr;
     LaneMask lanes = 0;
     LaneMask summed = 0;  // of these: kSummed lights are done but for their highlights
-    size_t next = 0;      // task
+    // What is left of the tasks: those that are in no sum, and the others.
+    const LightTask *next = nullptr, *end = nullptr;
+    const LightTask *next_summed = nullptr, *end_summed = nullptr;
+
+    // Of the task that comes next; `none`: there is none.
+    HWY_INLINE size_t NextLight(size_t none) const {
+      const size_t light = next != end ? next->light : none;
+      return next_summed != end_summed ? std::min<size_t>(light, next_summed->light) : light;
+    }
   };
   // Lanes on one face, and the work that they cost.
   struct Visit {
     int32_t object;
     LaneMask lanes;
     uint32_t work;
-  };
-  // What was done for the lanes of the packet.
-  struct Use {
-    LaneMask searched = 0, listed = 0, summed = 0;
   };
   // What there is to do about one light.
   struct Work {
@@ -132,16 +157,11 @@ class CachedLights {
   void CollectCells(const SurfaceTree& tree, const PacketHits& hits, LaneMask lanes,
                     const LaneMaterials& materials, LightSum& sum) {
     for (LaneMask left = lanes; left != 0;) {
-      const int lane = std::countr_zero(left);
-      const SurfaceCell deepest = {kMaxSurfaceDepth, static_cast<uint32_t>(places_.i[lane]),
-                                   static_cast<uint32_t>(places_.j[lane])};
-      const SurfaceNode& node = tree.cells().Find(places_.patch[lane], deepest, reader_.now());
-      LaneMask same = LanesIn(node, lane) & left;
+      OpenCells::Entry& entry = cells_.Find(tree, places_, std::countr_zero(left));
+      const SurfaceNode& node = *entry.node;
+      LaneMask same = LanesIn(entry) & left;
       left &= ~same;
-      if (!skipped_) {
-        const auto uses = static_cast<uint32_t>(std::popcount(same));
-        node.uses.fetch_add(uses, std::memory_order_relaxed);
-      }
+      if (!skipped_) entry.uses += static_cast<uint32_t>(std::popcount(same));
       if (booking_) visit_[visits_ - 1].work += kCellWork + WorkOf(node.payload.get());
       if (node.payload == nullptr) {
         unknown_ |= same;
@@ -158,27 +178,28 @@ class CachedLights {
     }
   }
 
-  // Lanes on the same patch whose cell is the node's.
-  HWY_INLINE LaneMask LanesIn(const SurfaceNode& node, int lane) const {
-    const int shift = kMaxSurfaceDepth - node.cell.depth;
-    const auto index = [&](const int32_t* of, uint32_t cell) HWY_ATTR {
+  // Lanes on the same patch that lie in the cell.
+  HWY_INLINE LaneMask LanesIn(const OpenCells::Entry& cell) const {
+    const auto index = [&](const int32_t* of, int32_t wanted) HWY_ATTR {
       Truth<int32_t> r;
       const Ints x = Ints::Load(of);
       for (size_t k = 0; k < LanesOf<int32_t>::kVectors; ++k) {
-        r.v[k] = hn::Eq(hn::ShiftRightSame(x.v[k], shift),
-                        hn::Set(Ints::Tag(), static_cast<int32_t>(cell)));
+        r.v[k] = hn::Eq(hn::ShiftRightSame(x.v[k], cell.shift), hn::Set(Ints::Tag(), wanted));
       }
       return r;
     };
-    const Truth<int32_t> patch = Ints::Load(places_.patch) == Ints::All(places_.patch[lane]);
-    return BitsOf(OfFloats(patch & index(places_.i, node.cell.i) & index(places_.j, node.cell.j)));
+    const Truth<int32_t> patch = Ints::Load(places_.patch) == Ints::All(cell.patch);
+    return BitsOf(OfFloats(patch & index(places_.i, cell.i) & index(places_.j, cell.j)));
   }
 
   void Open(const SurfaceNode& node, LaneMask lanes, bool thin, const LaneMaterials& materials,
             LightSum& sum) {
     Group& group = group_[groups_++];
-    group = {node.payload.get(), lanes, 0, 0};
-    const double scale = std::ldexp(1.0, node.cell.depth);
+    const CellLights& known = *node.payload;
+    const LightTask* tasks = known.tasks.data();
+    const LightTask *rest = tasks + known.rest_of_tasks, *end = tasks + known.tasks.size();
+    group = {&known, lanes, 0, tasks, rest, rest, end};
+    const double scale = static_cast<double>(1u << node.cell.depth);
     const auto local = [&](const double* x, uint32_t cell, float* to) HWY_ATTR {
       const Doubles in = Doubles::Load(x) * Doubles::All(scale) - Doubles::All(cell);
       const Floats f = Demoted(Clamped(in));
@@ -190,6 +211,9 @@ class CachedLights {
     const LaneMask outside = thin ? lanes & places_.outward : lanes;
     AddSum(group, 0, outside, s, t, materials, sum);
     AddSum(group, 1, lanes & ~outside, s, t, materials, sum);
+    if (group.summed == lanes && (lanes & materials.shines) == 0) {
+      group.next_summed = group.end_summed;
+    }
   }
 
   HWY_INLINE void AddSum(Group& group, size_t side, LaneMask lanes, const Floats& s,
@@ -208,42 +232,26 @@ class CachedLights {
   // Light by light, in order, as the classical tracer sums them.
   void AddTasks(const PacketHits& hits, const HitPoints& at, const LaneMaterials& materials,
                 LightSum& sum) {
-    if (groups_ == 1 && unknown_ == 0) {
-      for (const LightTask& task : group_[0].known->tasks) {
-        Work work;
-        Take(group_[0], task, materials, work);
-        AddLight(task.light, work, hits, at, sum);
-      }
-      return;
-    }
     const size_t count = scene_.lights().size();
     for (;;) {
       size_t light = unknown_ != 0 ? next_unknown_ : count;
-      for (int g = 0; g < groups_; ++g) {
-        const Group& group = group_[g];
-        if (group.next < group.known->tasks.size()) {
-          light = std::min<size_t>(light, group.known->tasks[group.next].light);
-        }
-      }
+      for (int g = 0; g < groups_; ++g) light = std::min(light, group_[g].NextLight(count));
       if (light >= count) return;
       Work work;
-      Take(light, materials, work);
+      if (unknown_ != 0) {
+        work.search = unknown_;
+        next_unknown_ = light + 1;
+      }
+      for (int g = 0; g < groups_; ++g) Take(light, group_[g], materials, work);
       AddLight(light, work, hits, at, sum);
     }
   }
 
-  HWY_INLINE void Take(size_t light, const LaneMaterials& materials, Work& work) {
-    if (unknown_ != 0) {
-      work.search = unknown_;
-      next_unknown_ = light + 1;
-    }
-    for (int g = 0; g < groups_; ++g) {
-      Group& group = group_[g];
-      if (group.next >= group.known->tasks.size()) continue;
-      const LightTask& task = group.known->tasks[group.next];
-      if (task.light != light) continue;
-      ++group.next;
-      Take(group, task, materials, work);
+  HWY_INLINE void Take(size_t light, Group& group, const LaneMaterials& materials, Work& work) {
+    if (group.next != group.end && group.next->light == light) {
+      Take(group, *group.next++, materials, work);
+    } else if (group.next_summed != group.end_summed && group.next_summed->light == light) {
+      Take(group, *group.next_summed++, materials, work);
     }
   }
 
@@ -346,12 +354,16 @@ class CachedLights {
   Visit visit_[kPacketLanes];
   int visits_ = 0;
   Places places_;
+  OpenCells cells_;
+  Sheet sheet_;
+  VisibleFace asked_face_;                                         // whether it
+  bool has_sheet_ = false;                                         // is a sheet
   alignas(64) float s_[kPacketLanes] = {}, t_[kPacketLanes] = {};  // within the lanes' cells
   Group group_[kPacketLanes];
   int groups_ = 0;
   LaneMask unknown_ = 0;  // lanes in no cell
   size_t next_unknown_ = 0;
-  Use use_;
+  LaneUses use_;
 };
 
 }  // namespace linetree::HWY_NAMESPACE

@@ -6,13 +6,12 @@
 #define LINETREE_CORE_PACKET_BLOCK_INL_H_
 #endif
 
+#include "core/packet/eye_grid-inl.h"
 #include "core/packet/follow-inl.h"
 #include "core/packet/packet_kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
-
-inline constexpr int kTileSide = 4;
 
 // The lanes of a tile of which so many columns and rows are wanted.
 HWY_INLINE LaneMask LanesWithin(int columns, int rows) {
@@ -22,43 +21,6 @@ HWY_INLINE LaneMask LanesWithin(int columns, int rows) {
     if (lane % kTileSide < columns && lane / kTileSide < rows) lanes |= LaneMask{1} << lane;
   }
   return lanes;
-}
-
-// Eye rays of a block's pixels: EyeRays::ThroughPixel, in its order.
-class EyeGrid {
- public:
-  HWY_INLINE EyeGrid(const EyeRays& eye_rays, int column, int row) : eye_rays_(eye_rays) {
-    for (int i = 0; i < kBlockSide; ++i) {
-      across_[i] = 2 * (column + i + 0.5) / eye_rays.width() - 1;
-      up_[i] = 1 - 2 * (row + i + 0.5) / eye_rays.height();
-    }
-  }
-
-  // Of the tile whose top left pixel is this one of the block's.
-  HWY_INLINE void SetDirections(int column, int row, PacketRays& rays) const {
-    alignas(64) double x[kPacketLanes], y[kPacketLanes];
-    for (int line = 0; line < kTileSide; ++line) {
-      for (int i = 0; i < kTileSide; ++i) {
-        x[line * kTileSide + i] = across_[column + i];
-        y[line * kTileSide + i] = up_[row + line];
-      }
-    }
-    const Doubles across = Doubles::Load(x), up = Doubles::Load(y);
-    const WideVectors sum = Spread(eye_rays_.forward()) + Spread(eye_rays_.right()) * across +
-                            Spread(eye_rays_.up()) * up;
-    Store(Normalized(sum, Dot(sum, sum)), rays.direction);
-  }
-
- private:
-  const EyeRays& eye_rays_;
-  double across_[kBlockSide], up_[kBlockSide];
-};
-
-HWY_INLINE void SetEyes(const EyeRays& eye_rays, PacketRays& rays) {
-  Store(Spread(eye_rays.eye()), rays.origin);
-  Ints::All(kNoObject).Store(rays.start_object);
-  Ints::All(0).Store(rays.start_face);
-  rays.start_inside = 0;
 }
 
 // The beginning of paths.
@@ -71,6 +33,7 @@ HWY_INLINE void SetUpPaths(PathPacket& packet) {
 }
 
 HWY_INLINE void SetPixels(int first, PathPacket& packet) {
+  packet.is_tile = true;
   for (int lane = 0; lane < kPacketLanes; ++lane) packet.pixel[lane] = first + lane;
 }
 
@@ -153,63 +116,211 @@ HWY_INLINE void StoreFirstHits(const PacketHits& hits, const TilePlace& place, s
   }
 }
 
+// Of a tile all of which sees one object.
+HWY_INLINE void StoreFirstHit(int32_t seen, const Floats& depth, const TilePlace& place,
+                              size_t stride, const PixelTarget& target) {
+  if (target.object != nullptr) {
+    alignas(64) int32_t object[kPacketLanes];
+    Ints::All(seen).Store(object);
+    StoreTile<1>(object, place, stride, target.object);
+  }
+  if (target.depth != nullptr) {
+    alignas(64) float at[kPacketLanes];
+    depth.Store(at);
+    StoreTile<1>(at, place, stride, target.depth);
+  }
+}
+
 // The sums of a tile, channel by channel, as pixels.
 HWY_INLINE void StoreRadiance(const float* sums, const TilePlace& place, size_t stride, float* to) {
   alignas(64) float pixels[3 * kPacketLanes];
-  for (int lane = 0; lane < kPacketLanes; ++lane) {
-    for (int c = 0; c < 3; ++c) pixels[3 * lane + c] = sums[c * kBlockPixels + lane];
+  for (size_t k = 0; k < LanesOf<float>::kVectors; ++k) {
+    const Floats::Tag tag;
+    const float* from = sums + k * LanesOf<float>::kWidth;
+    hn::StoreInterleaved3(hn::Load(tag, from), hn::Load(tag, from + kBlockPixels),
+                          hn::Load(tag, from + 2 * kBlockPixels), tag,
+                          pixels + 3 * k * LanesOf<float>::kWidth);
   }
   StoreTile<3>(pixels, place, stride, to);
 }
 
-// Of the block's tiles, row by row, those whose bit is set in `tiles`.
+// Renders tiles of one block.
 template <class Lights>
-HWY_INLINE void RenderTiles(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
-                            Lights& lights, PacketWorkspace& workspace, PacketCounts& counts) {
-  const PixelTarget& target = task.target;
-  const PacketTracer::Region& region = task.region;
-  const bool digested = target.topology != nullptr;
-  Follower<Lights> follower(scene, task.limits, lights, digested, workspace, counts);
-  ClearQueues(workspace);
-  std::fill_n(workspace.uses(), kBlockPixels, 0);
-  if (digested) std::fill_n(workspace.digest(), kBlockPixels, 0);
-  const int tiles_across = (region.width + kTileSide - 1) / kTileSide;
-  const int tiles_down = (region.height + kTileSide - 1) / kTileSide;
-  const int count = tiles_across * tiles_down;
-  const EyeGrid grid(task.eye_rays, region.column, region.row);
-  PathPacket packet;
-  SetUpPaths(packet);
-  SetEyes(task.eye_rays, packet.rays);
-  TilePlace places[kBlockPixels / kPacketLanes];
-  for (int tile = 0; tile < count; ++tile) {
-    if ((tiles >> tile & 1) == 0) continue;
-    const int column = tile % tiles_across * kTileSide, row = tile / tiles_across * kTileSide;
-    TilePlace& place = places[tile];
+class BlockRenderer {
+ public:
+  HWY_INLINE BlockRenderer(const PacketScene& scene, const BlockTask& task, Lights& lights,
+                           PacketWorkspace& workspace, PacketCounts& counts)
+      : scene_(scene),
+        task_(task),
+        lights_(lights),
+        workspace_(workspace),
+        counts_(counts),
+        digested_(task.target.topology != nullptr),
+        tiles_across_((task.region.width + kTileSide - 1) / kTileSide),
+        tiles_down_((task.region.height + kTileSide - 1) / kTileSide),
+        grid_(task.eye_rays, task.region.column, task.region.row),
+        sighter_(scene, task.eye_rays, grid_),
+        follower_(scene, task.limits, lights, digested_, workspace, counts) {
+    SetUpPaths(packet_);
+    SetEyes(task.eye_rays, packet_.rays);
+  }
+
+  // Of the block's tiles, row by row, those whose bit is set.
+  HWY_INLINE void Render(uint64_t tiles) {
+    tiles_ = tiles;
+    ClearQueues(workspace_);
+    std::fill_n(workspace_.uses(), kBlockPixels, 0);
+    if (digested_) std::fill_n(workspace_.digest(), kBlockPixels, 0);
+    for (int row = 0; row < tiles_down_; row += kSquareTiles) {
+      for (int column = 0; column < tiles_across_; column += kSquareTiles) {
+        RenderSquare(column, row, kSquareTiles);
+      }
+    }
+    FollowQueues(follower_, task_.limits, workspace_);
+    StoreTiles();
+  }
+
+ private:
+  // Sides of the squares that are looked at as a whole, in tiles: the block first, then its
+  // quadrants, and of them those that seem to see one face. To look costs as much as a packet.
+  static constexpr int kSquareTiles = 8, kLeastSquareTiles = 2;
+
+  HWY_INLINE bool IsWanted(int column, int row) const {
+    return column < tiles_across_ && row < tiles_down_ &&
+           (tiles_ >> (row * tiles_across_ + column) & 1) != 0;
+  }
+
+  HWY_INLINE int CountWanted(int column, int row, int side) const {
+    int count = 0;
+    for (int r = row; r < row + side; ++r) {
+      for (int c = column; c < column + side; ++c) count += IsWanted(c, r) ? 1 : 0;
+    }
+    return count;
+  }
+
+  HWY_INLINE Sight Look(int column, int row, int side) const {
+    const int x = column * kTileSide, y = row * kTileSide;
+    return sighter_.Look(x, y, std::min(side * kTileSide, task_.region.width - x),
+                         std::min(side * kTileSide, task_.region.height - y));
+  }
+  // Column, row and side in tiles.
+  HWY_NOINLINE void RenderSquare(int column, int row, int side) {
+    const int wanted = CountWanted(column, row, side);
+    if (wanted == 0) return;
+    Sight sight;
+    if (task_.sees_squares && 2 * wanted >= side * side) sight = Look(column, row, side);
+    const int half = side / 2;
+    const bool looks_on = side == kSquareTiles && task_.sees_squares;
+    if (sight.face || side == kLeastSquareTiles || (sight.quadrants == 0 && !looks_on)) {
+      RenderTilesOf(column, row, side, sight.face ? &*sight.face : nullptr);
+      return;
+    }
+    for (int q = 0; q < 4; ++q) {
+      const int c = column + q % 2 * half, r = row + q / 2 * half;
+      if (looks_on || (sight.quadrants >> q & 1) != 0) {
+        RenderSquare(c, r, half);
+      } else {
+        RenderTilesOf(c, r, half, nullptr);
+      }
+    }
+  }
+
+  HWY_INLINE void RenderTilesOf(int column, int row, int side, const VisibleFace* face) {
+    for (int r = row; r < row + side; ++r) {
+      for (int c = column; c < column + side; ++c) {
+        if (IsWanted(c, r)) RenderTile(c, r, face);
+      }
+    }
+  }
+
+  // `face`: what all of it sees, if that is known.
+  HWY_NOINLINE void RenderTile(int tile_column, int tile_row, const VisibleFace* face) {
+    const PacketTracer::Region& region = task_.region;
+    const int tile = tile_row * tiles_across_ + tile_column;
+    const int column = tile_column * kTileSide, row = tile_row * kTileSide;
+    TilePlace& place = places_[tile];
     place = {region.column + column, region.row + row,
              LanesWithin(region.width - column, region.height - row)};
     const int first = tile * kPacketLanes;
-    grid.SetDirections(column, row, packet.rays);
-    packet.rays.active = place.lanes;
-    SetPixels(first, packet);
-    counts.rays.eye += static_cast<uint64_t>(std::popcount(place.lanes));
-    follower.Follow(packet, 1);
-    for (int c = 0; c < 3; ++c) {
-      follower.sum()[c].Store(workspace.radiance() + c * kBlockPixels + first);
+    packet_.rays.active = place.lanes;
+    SetPixels(first, packet_);
+    counts_.rays.eye += static_cast<uint64_t>(std::popcount(place.lanes));
+    if (face != nullptr) {
+      CountSeen(place.lanes);
+      if (RenderSheet(*face, column, row, place, first)) return;
+      grid_.SetDirections(column, row, packet_.rays);
+      SetHitsOn(scene_, packet_.rays, *face, follower_.hits(), counts_);
+    } else {
+      grid_.SetDirections(column, row, packet_.rays);
+      HitSearch search;
+      SearchHits(scene_, packet_.rays, search, counts_);
+      const auto own = FaceOf(search, place.lanes);
+      if (own && RenderSheet(*own, column, row, place, first)) return;
+      CompleteHits(scene_, packet_.rays, search, follower_.hits(), counts_);
     }
-    StoreFirstHits(follower.hits(), place, task.stride, target);
+    follower_.FollowHits(packet_, 1);
+    float* sums = workspace_.radiance() + first;
+    for (int c = 0; c < 3; ++c) follower_.sum()[c].Store(sums + c * kBlockPixels);
+    StoreFirstHits(follower_.hits(), place, task_.stride, task_.target);
   }
-  FollowQueues(follower, task.limits, workspace);
-  for (int tile = 0; tile < count; ++tile) {
-    const TilePlace& place = places[tile];
-    if (place.lanes == 0) continue;
-    const int first = tile * kPacketLanes;
-    StoreRadiance(workspace.radiance() + first, place, task.stride, target.radiance);
-    if (digested) StoreTile<1>(workspace.digest() + first, place, task.stride, target.topology);
-    if (target.uses != nullptr) {
-      StoreTile<1>(workspace.uses() + first, place, task.stride, target.uses);
+
+  // A search that was spared counts as one all the same: as many rays are answered.
+  HWY_INLINE void CountSeen(LaneMask lanes) {
+    const auto seen = static_cast<uint64_t>(std::popcount(lanes));
+    counts_.rays.intersect += seen;
+    counts_.seen += seen;
+  }
+
+  // What packet_ sees on a face, if its light is known without its hits.
+  HWY_INLINE bool RenderSheet(const VisibleFace& face, int column, int row, const TilePlace& place,
+                              int first) {
+    if constexpr (Lights::kHasSheets) {
+      if (face.object == kNoObject ||
+          !lights_.OpenSheet(face, task_.eye_rays,
+                             grid_.BoundsOf(0, 0, task_.region.width, task_.region.height))) {
+        return false;
+      }
+      Floats radiance[3], depth;
+      if (!lights_.EvaluateSheet(packet_, grid_.Across(column), grid_.Up(row), radiance, depth)) {
+        return false;
+      }
+      float* sums = workspace_.radiance() + first;
+      for (int c = 0; c < 3; ++c) radiance[c].Store(sums + c * kBlockPixels);
+      StoreFirstHit(face.object, depth, place, task_.stride, task_.target);
+      return true;
+    }
+    return false;
+  }
+
+  HWY_INLINE void StoreTiles() {
+    const PixelTarget& target = task_.target;
+    for (int tile = 0; tile < tiles_across_ * tiles_down_; ++tile) {
+      const TilePlace& place = places_[tile];
+      if (place.lanes == 0) continue;
+      const int first = tile * kPacketLanes;
+      StoreRadiance(workspace_.radiance() + first, place, task_.stride, target.radiance);
+      if (digested_)
+        StoreTile<1>(workspace_.digest() + first, place, task_.stride, target.topology);
+      if (target.uses != nullptr) {
+        StoreTile<1>(workspace_.uses() + first, place, task_.stride, target.uses);
+      }
     }
   }
-}
+
+  const PacketScene& scene_;
+  const BlockTask& task_;
+  Lights& lights_;
+  PacketWorkspace& workspace_;
+  PacketCounts& counts_;
+  const bool digested_;
+  const int tiles_across_, tiles_down_;
+  uint64_t tiles_ = 0;
+  const EyeGrid grid_;
+  const Sighter sighter_;
+  Follower<Lights> follower_;
+  PathPacket packet_;
+  TilePlace places_[kBlockPixels / kPacketLanes];
+};
 
 }  // namespace linetree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

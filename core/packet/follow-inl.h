@@ -6,18 +6,50 @@
 #define LINETREE_CORE_PACKET_FOLLOW_INL_H_
 #endif
 
-#include "core/packet/hits-inl.h"
 #include "core/packet/packet_workspace.h"
 #include "core/packet/shade-inl.h"
+#include "core/packet/sight-inl.h"
 #include "core/packet/spawn-inl.h"
 #include "core/packet/topology.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
+// What was done for the lanes of a packet: see PixelUse.
+struct LaneUses {
+  LaneMask searched = 0, listed = 0, summed = 0;
+};
+
+// Notes it for their pixels.
+HWY_INLINE void MarkUses(const PathPacket& packet, const LaneUses& uses,
+                         PacketWorkspace& workspace) {
+  const auto bits = [](LaneMask lanes, int use)
+                        HWY_ATTR { return Select(MaskOf(lanes), Ints::All(use), Ints::All(0)); };
+  const Ints all =
+      bits(uses.searched, kSearched) | bits(uses.listed, kListed) | bits(uses.summed, kSummed);
+  uint8_t* to = workspace.uses();
+  if (packet.is_tile) {
+    to += packet.pixel[0];
+    for (size_t k = 0; k < LanesOf<int32_t>::kVectors; ++k) {
+      const hn::Rebind<uint8_t, Ints::Tag> bytes;
+      uint8_t* at = to + k * LanesOf<int32_t>::kWidth;
+      hn::StoreU(hn::Or(hn::LoadU(bytes, at), hn::DemoteTo(bytes, all.v[k])), bytes, at);
+    }
+    return;
+  }
+  alignas(64) int32_t use[kPacketLanes];
+  all.Store(use);
+  for (LaneMask left = packet.rays.active; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    to[packet.pixel[lane]] |= static_cast<uint8_t>(use[lane]);
+  }
+}
+
 // The lights by searching the scene for what is in between.
 class SearchedLights {
  public:
+  static constexpr bool kHasSheets = false;
+
   HWY_INLINE SearchedLights(const PacketScene& scene, bool digested, PacketWorkspace& workspace,
                             PacketCounts& counts)
       : scene_(scene),
@@ -76,6 +108,10 @@ class Follower {
   // sum().
   void Follow(const PathPacket& packet, int depth) {
     FindHitsOf(scene_, packet.rays, hits_, counts_);
+    FollowHits(packet, depth);
+  }
+  // The same, when hits() are set.
+  void FollowHits(const PathPacket& packet, int depth) {
     const LaneMask active = packet.rays.active, missed = active & ~hits_.hit;
     total_ = asked_ = 0;
     if (hits_.hit != 0) {
@@ -95,7 +131,7 @@ class Follower {
     if (digested_) Digest(packet);
   }
 
-  const PacketHits& hits() const { return hits_; }
+  PacketHits& hits() { return hits_; }
   const Floats* sum() const { return sum_; }
 
  private:

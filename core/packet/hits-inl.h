@@ -101,34 +101,55 @@ inline HWY_NOINLINE LaneMask FinishHits(const PacketScene& scene, const PacketRa
   return bad;
 }
 
-inline HWY_NOINLINE void FindHitsOf(const PacketScene& scene, const PacketRays& rays,
-                                    PacketHits& hits, PacketCounts& counts) {
-  hits.hit = hits.inside = hits.first_on_line = 0;
+// What a packet's search leaves.
+struct HitSearch {
+  Nearest nearest;
+  LaneExits exits;
+  LaneMask again = 0;  // lanes that it leaves to the scalar tracer
+
+  // Written down, because what is implicit is not compiled for this target.
+  HWY_INLINE HitSearch() {}
+};
+
+inline HWY_NOINLINE void SearchHits(const PacketScene& scene, const PacketRays& rays,
+                                    HitSearch& search, PacketCounts& counts) {
   ++counts.packets;
   counts.rays.intersect += static_cast<uint64_t>(std::popcount(rays.active));
+  search.again = rays.active;
   if (rays.active == 0) return;
   FloatRays lines;
   lines.o = Filled(Demoted(Load(rays.origin) - Spread(scene.reference())), rays.active);
   lines.d = Filled(Demoted(Load(rays.direction)), rays.active);
   const Bounds origins = BoundsOf(lines.o), directions = BoundsOf(lines.d);
   lines.size = SizeOf(origins) + scene.least_length();
-  if (!(lines.size < PacketScene::kMostOfFloat)) {
-    FindAgain(scene, rays, rays.active, hits, counts);
-    return;
-  }
-  Nearest nearest;
-  LaneExits exits;
-  if ((rays.start_inside & rays.active) != 0) AddExits(scene, rays, exits, nearest);
+  if (!(lines.size < PacketScene::kMostOfFloat)) return;
+  if ((rays.start_inside & rays.active) != 0) AddExits(scene, rays, search.exits, search.nearest);
   const Shaft shaft(origins, directions, kShaftPad * lines.size, kShaftPad, kFarAway);
-  FindNearest(scene, lines, Ints::Load(rays.start_object), MaskOf(rays.active), shaft, nearest);
-  LaneMask again = BitsOf(nearest.Open()) & rays.active;
-  const LaneMask none = BitsOf(OfFloats(nearest.object() == Ints::All(kNoObject)));
-  again |= FinishHits(scene, rays, exits, nearest, rays.active & ~again & ~none, hits);
+  FindNearest(scene, lines, Ints::Load(rays.start_object), MaskOf(rays.active), shaft,
+              search.nearest);
+  search.again = BitsOf(search.nearest.Open()) & rays.active;
+}
+
+inline HWY_NOINLINE void CompleteHits(const PacketScene& scene, const PacketRays& rays,
+                                      const HitSearch& search, PacketHits& hits,
+                                      PacketCounts& counts) {
+  hits.hit = hits.inside = hits.first_on_line = 0;
+  const LaneMask none = BitsOf(OfFloats(search.nearest.object() == Ints::All(kNoObject)));
+  LaneMask again = search.again;
+  again |=
+      FinishHits(scene, rays, search.exits, search.nearest, rays.active & ~again & ~none, hits);
   if (again != 0) FindAgain(scene, rays, again, hits, counts);
   if (hits.hit == rays.active) return;
   for (LaneMask left = rays.active & ~hits.hit; left != 0; left &= left - 1) {
     hits.object[std::countr_zero(left)] = kNoObject;
   }
+}
+
+HWY_INLINE void FindHitsOf(const PacketScene& scene, const PacketRays& rays, PacketHits& hits,
+                           PacketCounts& counts) {
+  HitSearch search;
+  SearchHits(scene, rays, search, counts);
+  CompleteHits(scene, rays, search, hits, counts);
 }
 
 }  // namespace linetree::HWY_NAMESPACE

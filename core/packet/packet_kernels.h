@@ -27,6 +27,8 @@ struct BlockTask {
   const PathLimits& limits;
   size_t stride;
   const PixelTarget& target;
+  // Whether squares of pixels are looked at as a whole first.
+  bool sees_squares;
 };
 void RenderBlockWide(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                      PacketCounts& counts);

@@ -114,10 +114,11 @@ void RenderScalar(const Tracer& tracer, const BlockTask& task, PacketCounts& cou
 
 }  // namespace
 
-PacketTracer::PacketTracer(const Tracer& tracer)
+PacketTracer::PacketTracer(const Tracer& tracer, bool sees_squares)
     : tracer_(tracer),
       scene_(std::make_unique<const PacketScene>(tracer)),
-      radiance_rounding_(PacketRadianceRounding(LargestExponent(tracer.scene()))) {}
+      radiance_rounding_(PacketRadianceRounding(LargestExponent(tracer.scene()))),
+      sees_squares_(sees_squares) {}
 PacketTracer::~PacketTracer() = default;
 
 size_t PacketTracer::ByteSize() const { return sizeof(PacketScene) + scene_->ByteSize(); }
@@ -191,7 +192,7 @@ void PacketTracer::RenderRegion(const EyeRays& eye_rays, const Region& region,
       const Region block = {region.column + x, region.row + y,
                             std::min(kBlockSide, region.width - x),
                             std::min(kBlockSide, region.height - y)};
-      const BlockTask task = {eye_rays, block, limits, stride, target};
+      const BlockTask task = {eye_rays, block, limits, stride, target, sees_squares_};
       if (IsWide()) {
         RenderBlockWide(*scene_, task, workspace, counts);
       } else {

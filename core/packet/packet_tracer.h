@@ -46,8 +46,9 @@ struct PixelTarget {
 
 class PacketTracer {
  public:
-  // Keeps a reference to the tracer, which must outlive it.
-  explicit PacketTracer(const Tracer& tracer);
+  // Keeps a reference to the tracer, which must outlive it. `sees_squares`: whether squares of pixels
+  // are looked at as a whole before their eye rays are searched for; no result depends on it.
+  explicit PacketTracer(const Tracer& tracer, bool sees_squares = true);
   ~PacketTracer();
 
   const Tracer& tracer() const { return tracer_; }
@@ -55,6 +56,7 @@ class PacketTracer {
   size_t ByteSize() const;
   // Whether the scene fits float; if not, every lane is traced by the scalar tracer.
   bool IsWide() const;
+  bool sees_squares() const { return sees_squares_; }
   // PacketRadianceRounding of the scene's sharpest highlight.
   double radiance_rounding() const { return radiance_rounding_; }
 
@@ -93,6 +95,7 @@ class PacketTracer {
   const Tracer& tracer_;
   const std::unique_ptr<const PacketScene> scene_;
   const double radiance_rounding_;
+  const bool sees_squares_;
 };
 
 }  // namespace linetree

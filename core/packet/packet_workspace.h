@@ -17,6 +17,7 @@ struct alignas(64) PathPacket {
   float throughput[3][kPacketLanes];  // product of the coefficients on the way
   int32_t pixel[kPacketLanes];        // of the block that is being traced
   uint32_t path[kPacketLanes];        // see TopologyDigest
+  bool is_tile = false;               // lane i's pixel is number pixel[0] + i
 };
 
 // What was done for a pixel, anywhere on its paths.

@@ -270,6 +270,14 @@ HWY_INLINE LaneView ViewAt(const PacketRays& rays, const HitPoints& at) {
   return {-Demoted(direction), Max(Demoted(-Dot(at.normal, direction)), Floats::All(0))};
 }
 
+// Fall-off of a light that has any, at a distance.
+HWY_INLINE Floats StrengthAt(const PacketLight& light, const Floats& distance) {
+  const Floats ratio = distance * Floats::All(light.inverse_fade_distance);
+  const Floats power =
+      light.fade_power == 2 ? ratio * ratio : Power(ratio, Floats::All(light.fade_power));
+  return Floats::All(2) / (Floats::All(1) + power);
+}
+
 // Sums light terms over the lanes of a packet.
 class LightSum {
  public:
@@ -298,12 +306,7 @@ class LightSum {
       highlight = Power(Max(half, Floats::All(0x1p-100f)), materials_.exponent);
     }
     Floats strength = one;
-    if (light.inverse_fade_distance > 0) {
-      const Floats ratio = seen.distance * Floats::All(light.inverse_fade_distance);
-      const Floats power =
-          light.fade_power == 2 ? ratio * ratio : Power(ratio, Floats::All(light.fade_power));
-      strength = Floats::All(2) / (one + power);
-    }
+    if (light.inverse_fade_distance > 0) strength = StrengthAt(light, seen.distance);
     const Mask lit = MaskOf(shadow.lit & ~odd);
     const Floats cosine = summed == 0 ? seen.cosine : Select(MaskOf(summed), zero, seen.cosine);
     for (int c = 0; c < 3; ++c) {

@@ -154,7 +154,8 @@ template <class TilesOf>
 void Blocks::RenderWave(double from, double to, bool booking, TilesOf&& tiles_of) {
   ForBlocks(from, to, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
     const PixelTarget target = Target();
-    const BlockTask task = {eye_rays_, RegionOf(block), options_.limits, Stride(), target};
+    const BlockTask task = {eye_rays_, RegionOf(block), options_.limits,
+                            Stride(),  target,          packets_.sees_squares()};
     const SurfaceCache::Reader reader(surfaces_, SumError());
     RenderFrameBlockWide(packets_.scene(), task, tiles_of(block), reader, plan_, booking, workspace,
                          counts);

@@ -72,9 +72,12 @@ struct CellLights {
   std::vector<ShadowFunction> functions;
   std::vector<float> coefficients;
   CellShadows shadows;
-  // Those of `lights` that may reach the piece, ascending: not kOff, not kFacingAway. For hits
-  // whose facing normal is the outward one.
+  // Those of `lights` that may reach the piece: not kOff, not kFacingAway. For hits whose facing
+  // normal is the outward one. The first `rest_of_tasks` are those that are in no sum, then come
+  // the others (kSummed), both ascending.
   std::vector<LightTask> tasks;
+  uint32_t rest_of_tasks = 0;
+  size_t CountSummed() const { return tasks.size() - rest_of_tasks; }
   // The diffuse light of those that are `summed`, on the outside or the side that a planar shape's
   // normal points to, and on its other side. Null: evaluate them one by one.
   std::array<std::unique_ptr<const DiffuseSum>, 2> sums;

@@ -30,6 +30,10 @@ void CellLights::MakeTasks(const Scene& scene) {
     }
     tasks.push_back(task);
   }
+  const auto rest = std::stable_partition(tasks.begin(), tasks.end(), [](const LightTask& task) {
+    return task.kind != LightTask::Kind::kSummed;
+  });
+  rest_of_tasks = static_cast<uint32_t>(rest - tasks.begin());
   tasks.shrink_to_fit();
 }
 

@@ -6,6 +6,12 @@
 #include "core/trace/intersect.h"
 
 namespace linetree {
+namespace {
+
+// One point at a time, fewer lights are evaluated one by one as fast.
+constexpr size_t kMinLightsWorthASum = 3;
+
+}  // namespace
 
 SurfaceTree::SurfaceTree(const Object& object)
     : object_(object), chart_(object), cells_(chart_.patches()) {
@@ -38,6 +44,7 @@ void SurfaceTree::AddDiffuse(const Hit& hit, double s, double t, const SurfaceNo
                              double epsilon, KnownLights& known) const {
   const auto& sums = node.payload->sums;
   if (!sums[0] && !sums[1]) return;
+  if (node.payload->CountSummed() < kMinLightsWorthASum) return;
   const auto side = SideOf(hit);
   if (!side || !sums[*side] || !(sums[*side]->spread <= epsilon)) return;
   known.has_diffuse = true;
