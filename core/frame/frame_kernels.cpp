@@ -38,14 +38,14 @@ HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void RenderFrameBlock(const PacketScene&, const BlockTask&, uint64_t, const SurfaceCache::Reader&,
-                      FramePlan&, bool, PacketWorkspace&, PacketCounts&) {}
+void RenderFrameBlock(const PacketScene&, const BlockTask&, const SurfaceCache::Reader&, FramePlan&,
+                      bool, PacketWorkspace&, PacketCounts&) {}
 #else
-void RenderFrameBlock(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+void RenderFrameBlock(const PacketScene& scene, const BlockTask& task,
                       const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
                       PacketWorkspace& workspace, PacketCounts& counts) {
   CachedLights lights(scene, reader, plan, booking, workspace, counts);
-  BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render(tiles);
+  BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render();
 }
 #endif
 
@@ -57,11 +57,11 @@ namespace linetree {
 
 HWY_EXPORT(RenderFrameBlock);
 
-void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
                           PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
-  (scene, task, tiles, lights, plan, booking, workspace, counts);
+  (scene, task, lights, plan, booking, workspace, counts);
 }
 
 }  // namespace linetree

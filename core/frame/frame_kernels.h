@@ -7,9 +7,8 @@
 
 namespace linetree {
 
-// Of the tiles (4 x 4 pixels) of a block, row by row, those whose bit is set in `tiles`.
-// `booking`: the work is booked in the plan.
-void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task, uint64_t tiles,
+// As RenderBlockWide, with the trees' help. `booking`: the work is booked in the plan.
+void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
                           PacketWorkspace& workspace, PacketCounts& counts);
 

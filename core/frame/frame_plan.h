@@ -107,6 +107,7 @@ class FramePlan {
   }
   // Whether some object's trees were found to pay.
   bool WantsAny() const { return always_ || wants_any_; }
+  bool SkipsAll() const { return CountSkipped() == accounts_.size(); }
   // How often it was decided.
   uint32_t decisions() const { return decisions_; }
 

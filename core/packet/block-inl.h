@@ -165,9 +165,7 @@ class BlockRenderer {
     SetEyes(task.eye_rays, packet_.rays);
   }
 
-  // Of the block's tiles, row by row, those whose bit is set.
-  HWY_INLINE void Render(uint64_t tiles) {
-    tiles_ = tiles;
+  HWY_INLINE void Render() {
     ClearQueues(workspace_);
     std::fill_n(workspace_.uses(), kBlockPixels, 0);
     if (digested_) std::fill_n(workspace_.digest(), kBlockPixels, 0);
@@ -187,7 +185,7 @@ class BlockRenderer {
 
   HWY_INLINE bool IsWanted(int column, int row) const {
     return column < tiles_across_ && row < tiles_down_ &&
-           (tiles_ >> (row * tiles_across_ + column) & 1) != 0;
+           (task_.tiles >> (row * tiles_across_ + column) & 1) != 0;
   }
 
   HWY_INLINE int CountWanted(int column, int row, int side) const {
@@ -262,6 +260,11 @@ class BlockRenderer {
     float* sums = workspace_.radiance() + first;
     for (int c = 0; c < 3; ++c) follower_.sum()[c].Store(sums + c * kBlockPixels);
     StoreFirstHits(follower_.hits(), place, task_.stride, task_.target);
+    MarkMissed(place.lanes & ~follower_.hits().hit, workspace_.uses() + first);
+  }
+
+  static HWY_INLINE void MarkMissed(LaneMask missed, uint8_t* uses) {
+    for (; missed != 0; missed &= missed - 1) uses[std::countr_zero(missed)] |= kMissed;
   }
 
   // A search that was spared counts as one all the same: as many rays are answered.
@@ -301,9 +304,6 @@ class BlockRenderer {
       StoreRadiance(workspace_.radiance() + first, place, task_.stride, target.radiance);
       if (digested_)
         StoreTile<1>(workspace_.digest() + first, place, task_.stride, target.topology);
-      if (target.uses != nullptr) {
-        StoreTile<1>(workspace_.uses() + first, place, task_.stride, target.uses);
-      }
     }
   }
 
@@ -314,7 +314,6 @@ class BlockRenderer {
   PacketCounts& counts_;
   const bool digested_;
   const int tiles_across_, tiles_down_;
-  uint64_t tiles_ = 0;
   const EyeGrid grid_;
   const Sighter sighter_;
   Follower<Lights> follower_;

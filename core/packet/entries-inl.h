@@ -23,7 +23,7 @@ void EyePacket(const EyeRays& eye_rays, int column, int row, PacketRays& rays) {
 void RenderBlock(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                  PacketCounts& counts) {
   SearchedLights lights(scene, task.target.topology != nullptr, workspace, counts);
-  BlockRenderer<SearchedLights>(scene, task, lights, workspace, counts).Render(~uint64_t{0});
+  BlockRenderer<SearchedLights>(scene, task, lights, workspace, counts).Render();
 }
 
 void Radiance(const PacketScene& scene, const PacketRays& rays, const PathLimits& limits,

@@ -29,6 +29,8 @@ struct BlockTask {
   const PixelTarget& target;
   // Whether squares of pixels are looked at as a whole first.
   bool sees_squares;
+  // Of the region's tiles, row by row, those whose bit is set.
+  uint64_t tiles = ~uint64_t{0};
 };
 void RenderBlockWide(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                      PacketCounts& counts);

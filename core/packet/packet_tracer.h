@@ -41,7 +41,6 @@ struct PixelTarget {
   int32_t* object = nullptr;     // kNoObject for the background
   float* depth = nullptr;        // distance along the eye ray; infinity for the background
   uint64_t* topology = nullptr;  // digests of the ray trees, see TopologyDigest
-  uint8_t* uses = nullptr;       // PixelUse
 };
 
 class PacketTracer {

@@ -25,7 +25,9 @@ enum PixelUse : uint8_t {
   kSearched = 1,  // the scene was searched, other than for the eye ray's hit
   kListed = 2,    // a search was spared
   kSummed = 4,    // diffuse light came from a sum
+  kMissed = 8,    // the eye ray hits nothing
 };
+inline constexpr int kPixelUses = 16;  // combinations
 
 // Sides of the blocks of pixels whose secondary rays are collected into packets.
 inline constexpr int kBlockSide = 32;
@@ -65,6 +67,7 @@ class PacketWorkspace {
   // Sums of the block, by pixel: kBlockPixels for each channel.
   float* radiance() { return sums_->radiance; }
   uint64_t* digest() { return sums_->digest; }
+  // Of the last block, kPacketLanes for every tile.
   uint8_t* uses() { return sums_->uses; }
 
  private:

@@ -10,6 +10,7 @@
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
+#include "core/render/tile_sources.h"
 
 namespace linetree {
 namespace {
@@ -69,32 +70,30 @@ class Blocks {
         progress_(progress),
         frame_(frame),
         across_((frame.width + kBlockSide - 1) / kBlockSide),
-        down_((frame.height + kBlockSide - 1) / kBlockSide),
-        uses_(frame.object.size()) {}
+        down_((frame.height + kBlockSide - 1) / kBlockSide) {}
 
   bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
 
   void RenderClassical() {
-    ForBlocks(0, 1, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
-      packets_.RenderRegion(eye_rays_, RegionOf(block), options_.limits, Stride(), Target(),
-                            workspace, counts);
-    });
+    RenderWave(0, 1, Wave::kClassical, [](size_t) { return kAllTiles; });
   }
 
   void RenderCached();
-  void StoreSources();
 
  private:
+  // Whether the trees are asked, and the work is booked.
+  enum class Wave { kClassical, kCached, kBooked };
+
   PacketTracer::Region RegionOf(size_t block) const {
     const int column = static_cast<int>(block) % across_ * kBlockSide;
     const int row = static_cast<int>(block) / across_ * kBlockSide;
     return {column, row, std::min(kBlockSide, frame_.width - column),
             std::min(kBlockSide, frame_.height - row)};
   }
+  size_t BlockCount() const { return static_cast<size_t>(across_) * static_cast<size_t>(down_); }
   size_t Stride() const { return static_cast<size_t>(frame_.width); }
   PixelTarget Target() {
-    return {frame_.radiance.data(), frame_.object.data(), frame_.depth.data(), nullptr,
-            uses_.data()};
+    return {frame_.radiance.data(), frame_.object.data(), frame_.depth.data(), nullptr};
   }
   // What sums may be off by.
   double SumError() const { return options_.max_relative_error - packets_.radiance_rounding(); }
@@ -102,7 +101,7 @@ class Blocks {
   template <class Fn>
   void ForBlocks(double from, double to, Fn&& body);
   template <class TilesOf>
-  void RenderWave(double from, double to, bool booking, TilesOf&& tiles_of);
+  void RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of);
   uint64_t Refine(double weight, double horizon, size_t most_cells);
 
   const PacketTracer& packets_;
@@ -115,7 +114,6 @@ class Blocks {
   const Progress& progress_;
   Frame& frame_;
   const int across_, down_;
-  std::vector<uint8_t> uses_;  // PixelUse
   std::mutex mutex_;
   std::vector<std::unique_ptr<PacketWorkspace>> idle_;  // guarded by mutex_
 };
@@ -123,7 +121,7 @@ class Blocks {
 // body(block, workspace, counts) for all blocks; reports progress from one share to the other.
 template <class Fn>
 void Blocks::ForBlocks(double from, double to, Fn&& body) {
-  const auto count = static_cast<size_t>(across_) * static_cast<size_t>(down_);
+  const size_t count = BlockCount();
   for (size_t begin = 0; begin < count && !IsCancelled(); begin += kSliceBlocks) {
     std::vector<PacketCounts> counts(std::min(kSliceBlocks, count - begin));
     pool_.ParallelFor(
@@ -151,15 +149,28 @@ void Blocks::ForBlocks(double from, double to, Fn&& body) {
 }
 
 template <class TilesOf>
-void Blocks::RenderWave(double from, double to, bool booking, TilesOf&& tiles_of) {
+void Blocks::RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of) {
+  // Where no tree pays there is nothing to look up.
+  if (wave == Wave::kCached && plan_.SkipsAll()) wave = Wave::kClassical;
+  const bool asked = wave != Wave::kClassical;
+  std::vector<UseCounts> uses(BlockCount());
   ForBlocks(from, to, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+    const uint64_t tiles = tiles_of(block);
+    if (tiles == 0) return;
     const PixelTarget target = Target();
-    const BlockTask task = {eye_rays_, RegionOf(block), options_.limits,
-                            Stride(),  target,          packets_.sees_squares()};
-    const SurfaceCache::Reader reader(surfaces_, SumError());
-    RenderFrameBlockWide(packets_.scene(), task, tiles_of(block), reader, plan_, booking, workspace,
-                         counts);
+    const PacketTracer::Region region = RegionOf(block);
+    const BlockTask task = {
+        eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
+    if (asked) {
+      const SurfaceCache::Reader reader(surfaces_, SumError());
+      RenderFrameBlockWide(packets_.scene(), task, reader, plan_, wave == Wave::kBooked, workspace,
+                           counts);
+    } else {
+      RenderBlockWide(packets_.scene(), task, workspace, counts);
+    }
+    StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
   });
+  for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
 }
 
 // Cells that pay for themselves within `horizon` frames like this one.
@@ -199,51 +210,22 @@ void Blocks::RenderCached() {
   const auto first_tile = [turn](size_t block) {
     return turn < kOftenDecided || (block + turn) % kProbedBlocks == 0 ? FirstTile(block) : 0;
   };
-  RenderWave(0, 0.1, true, first_tile);
+  RenderWave(0, 0.1, Wave::kBooked, first_tile);
   plan_.Decide();
   const uint64_t cells = Refine(kTilesOfBlock, kSureHorizon, kUnlimited);
   const bool settled = cells == 0 && surfaces_.TreeCount() == trees;
   if (settled || !plan_.WantsAny()) {
-    RenderWave(0.1, 1, false, [&](size_t block) { return kAllTiles & ~first_tile(block); });
+    RenderWave(0.1, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~first_tile(block); });
   } else {
-    RenderWave(0.1, 0.3, false,
+    RenderWave(0.1, 0.3, Wave::kCached,
                [&](size_t block) { return FirstTiles(block) & ~first_tile(block); });
     Refine(static_cast<double>(kTilesOfBlock) / kTilesOfSecondWave, kSureHorizon, kUnlimited);
-    RenderWave(0.3, 1, false,
+    RenderWave(0.3, 1, Wave::kCached,
                [&](size_t block) { return kAllTiles & ~FirstTiles(block) & ~first_tile(block); });
   }
-  const double work = kLearningShare * kPixelWork * static_cast<double>(uses_.size());
+  const double work = kLearningShare * kPixelWork * static_cast<double>(frame_.object.size());
   const size_t lights = packets_.tracer().scene().lights.size();
   Refine(1, kHorizon, static_cast<size_t>(work / WorkOfCell(lights, false)));
-}
-
-void Blocks::StoreSources() {
-  FrameStats& stats = frame_.stats;
-  stats.pixels += uses_.size();
-  for (size_t p = 0; p < uses_.size(); ++p) {
-    Source source = Source::kTraced;
-    Verdict verdict = Verdict::kUntried;
-    const uint8_t use = uses_[p];
-    if (frame_.object[p] == kNoObject) {
-      source = Source::kBackground;
-      ++stats.background;
-    } else if (options_.mode == Mode::kCached && (use & kSearched) == 0) {
-      source = (use & kSummed) != 0 ? Source::kInterpolated : Source::kReplayed;
-      verdict = (use & kSummed) != 0 ? Verdict::kCertified : Verdict::kUntried;
-    } else if ((use & kListed) != 0) {
-      source = Source::kResidual;
-    }
-    if (source == Source::kInterpolated) {
-      ++stats.interpolated;
-    } else if (source != Source::kBackground) {
-      ++stats.traced;
-      stats.replayed += source == Source::kReplayed ? 1 : 0;
-      stats.residual += source == Source::kResidual ? 1 : 0;
-    }
-    ++stats.verdicts[static_cast<size_t>(verdict)];
-    frame_.source[p] = source;
-    frame_.verdict[p] = verdict;
-  }
 }
 
 }  // namespace
@@ -258,7 +240,6 @@ absl::Status RenderBlocks(const PacketTracer& packets, SurfaceCache& surfaces, F
     blocks.RenderClassical();
   }
   if (blocks.IsCancelled()) return absl::CancelledError("the request was cancelled");
-  blocks.StoreSources();
   return absl::OkStatus();
 }
 

@@ -1,0 +1,102 @@
+#include "core/render/tile_sources.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace linetree {
+namespace {
+
+constexpr int kTileSide = 4;
+
+struct Answer {
+  Source source = Source::kTraced;
+  Verdict verdict = Verdict::kUntried;
+};
+
+Answer AnswerOf(size_t use, bool asked) {
+  if ((use & kMissed) != 0) return {Source::kBackground, Verdict::kUntried};
+  if (!asked) return {};
+  if ((use & kSearched) == 0) {
+    return (use & kSummed) != 0 ? Answer{Source::kInterpolated, Verdict::kCertified}
+                                : Answer{Source::kReplayed, Verdict::kUntried};
+  }
+  return (use & kListed) != 0 ? Answer{Source::kResidual, Verdict::kUntried} : Answer{};
+}
+
+// Where one tile's pixels lie in the frame.
+struct TilePixels {
+  size_t first;  // top left
+  size_t stride;
+  int columns, rows;
+};
+
+void StoreAlike(const TilePixels& at, const Answer& answer, Frame& frame) {
+  for (int row = 0; row < at.rows; ++row) {
+    const size_t p = at.first + static_cast<size_t>(row) * at.stride;
+    std::fill_n(frame.source.data() + p, at.columns, answer.source);
+    std::fill_n(frame.verdict.data() + p, at.columns, answer.verdict);
+  }
+}
+
+}  // namespace
+
+void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8_t* uses,
+                  bool asked, Frame& frame, UseCounts& counts) {
+  const auto stride = static_cast<size_t>(frame.width);
+  const int across = (block.width + kTileSide - 1) / kTileSide;
+  const int down = (block.height + kTileSide - 1) / kTileSide;
+  for (int tile = 0; tile < across * down; ++tile) {
+    if ((tiles >> tile & 1) == 0) continue;
+    const int column = tile % across * kTileSide, row = tile / across * kTileSide;
+    const TilePixels at = {
+        static_cast<size_t>(block.row + row) * stride + static_cast<size_t>(block.column + column),
+        stride, std::min(kTileSide, block.width - column), std::min(kTileSide, block.height - row)};
+    const uint8_t* own = uses + tile * kPacketLanes;
+    const bool whole = at.columns == kTileSide && at.rows == kTileSide;
+    if (whole && std::memcmp(own, own + 1, kPacketLanes - 1) == 0) {
+      counts.of[own[0]] += kPacketLanes;
+      StoreAlike(at, AnswerOf(own[0], asked), frame);
+      continue;
+    }
+    for (int y = 0; y < at.rows; ++y) {
+      for (int x = 0; x < at.columns; ++x) {
+        const uint8_t use = own[y * kTileSide + x];
+        ++counts.of[use];
+        const Answer answer = AnswerOf(use, asked);
+        const size_t p = at.first + static_cast<size_t>(y) * stride + static_cast<size_t>(x);
+        frame.source[p] = answer.source;
+        frame.verdict[p] = answer.verdict;
+      }
+    }
+  }
+}
+
+void AddSources(const UseCounts& counts, bool asked, FrameStats& stats) {
+  for (size_t use = 0; use < counts.of.size(); ++use) {
+    const uint64_t pixels = counts.of[use];
+    const Answer answer = AnswerOf(use, asked);
+    stats.pixels += pixels;
+    switch (answer.source) {
+      case Source::kBackground:
+        stats.background += pixels;
+        break;
+      case Source::kInterpolated:
+        stats.interpolated += pixels;
+        break;
+      case Source::kTraced:
+        stats.traced += pixels;
+        break;
+      case Source::kReplayed:
+        stats.traced += pixels;
+        stats.replayed += pixels;
+        break;
+      case Source::kResidual:
+        stats.traced += pixels;
+        stats.residual += pixels;
+        break;
+    }
+    stats.verdicts[static_cast<size_t>(answer.verdict)] += pixels;
+  }
+}
+
+}  // namespace linetree
