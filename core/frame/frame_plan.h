@@ -29,10 +29,20 @@ inline constexpr uint32_t kSumWork = 20;     // one sum of diffuse light
 inline constexpr uint32_t kListWork = 12;    // one list of candidates
 inline constexpr uint32_t kCandidateWork = 8;
 
+// A tile that is evaluated as a sheet: a cell on the way, beyond what its hits would have cost, and
+// there one light that is not in the sum.
+inline constexpr uint32_t kSheetWork = 25;
+inline constexpr uint32_t kSheetLightWork = 10;
+
 // What a packet is going to cost in cells that are still to be built, beside kCellWork: mostly it
 // lies in more than one, six lights in ten are on and not in a sum, one in seven has a list.
 inline uint32_t WorkOfUnknown(size_t lights) {
   return 45 + static_cast<uint32_t>(lights) * kLightWork;
+}
+
+// The same of a sheet: three lights in ten are not in a sum.
+inline uint32_t SheetWorkOfUnknown(size_t lights) {
+  return 3 * kSheetLightWork * static_cast<uint32_t>(lights) / 10;
 }
 
 // Of a new cell on a plane, or on a curved face, with its share of the cells above it.

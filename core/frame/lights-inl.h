@@ -77,7 +77,7 @@ class CachedLights {
     visits_ = 0;
     const uint32_t classical =
         booking_ ? WorkWithoutTrees(packet, hits, at, materials, lanes, sum) : 0;
-    Collect(hits, lanes, materials, sum);
+    Collect(packet, hits, lanes, materials, sum);
     use_.listed = lanes & ~unknown_;
     use_.searched = unknown_;
     AddTasks(hits, at, materials, sum);
@@ -106,6 +106,7 @@ class CachedLights {
     int32_t object;
     LaneMask lanes;
     uint32_t work;
+    bool is_sheet;  // or could be
   };
   // What there is to do about one light.
   struct Work {
@@ -120,8 +121,8 @@ class CachedLights {
     HWY_INLINE Work() {}
   };
 
-  void Collect(const PacketHits& hits, LaneMask lanes, const LaneMaterials& materials,
-               LightSum& sum) {
+  void Collect(const PathPacket& packet, const PacketHits& hits, LaneMask lanes,
+               const LaneMaterials& materials, LightSum& sum) {
     const Ints objects = Ints::Load(hits.object), faces = Ints::Load(hits.face);
     // A ray inside a solid asks the solid itself too.
     unknown_ = lanes & hits.inside;
@@ -137,15 +138,16 @@ class CachedLights {
         continue;
       }
       Visit& visit = visit_[visits_++];
-      visit = {object, same, 0};
+      visit = {object, same, 0, MayBeSheet(packet, object, face, same)};
       const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
       if (tree == nullptr) {
-        visit.work = kPlaneWork + kCellWork + WorkOfUnknown(scene_.lights().size());
+        visit.work = (visit.is_sheet ? 0 : kPlaneWork) + WorkIn(nullptr, visit.is_sheet);
         unknown_ |= same;
         continue;
       }
       const FaceForm& form = tree->FormOf(face);
-      visit.work = form.kind == FaceForm::Kind::kPlane ? kPlaneWork : kCurveWork;
+      const bool is_plane = form.kind == FaceForm::Kind::kPlane;
+      visit.work = visit.is_sheet ? 0 : is_plane ? kPlaneWork : kCurveWork;
       PlaceHits(form, hits, same, places_);
       // A grazing ray's normal may be turned inwards by rounding.
       const LaneMask placed = places_.on & (tree->chart().IsThin() ? kAllLanes : places_.outward);
@@ -162,7 +164,10 @@ class CachedLights {
       LaneMask same = LanesIn(entry) & left;
       left &= ~same;
       if (!skipped_) entry.uses += static_cast<uint32_t>(std::popcount(same));
-      if (booking_) visit_[visits_ - 1].work += kCellWork + WorkOf(node.payload.get());
+      if (booking_) {
+        Visit& visit = visit_[visits_ - 1];
+        visit.work += WorkIn(node.payload.get(), visit.is_sheet);
+      }
       if (node.payload == nullptr) {
         unknown_ |= same;
         continue;
@@ -311,10 +316,26 @@ class CachedLights {
     return true;
   }
 
+  // Whether these lanes of a packet, when it is not booked, may be evaluated as a sheet.
+  HWY_INLINE bool MayBeSheet(const PathPacket& packet, int32_t object, int face,
+                             LaneMask lanes) const {
+    const auto material = static_cast<size_t>(scene_.material_of()[static_cast<size_t>(object)]);
+    const PacketMaterials& table = scene_.materials();
+    return packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
+           table.spawns[material] == 0 && table.shines[material] == 0 &&
+           scene_.IsFlat(object, face);
+  }
+
   // What a packet in a cell costs; in one that is not built yet, at least.
-  uint32_t WorkOf(const CellLights* known) const {
-    if (known == nullptr) return WorkOfUnknown(scene_.lights().size());
-    uint32_t work = known->sums[0] || known->sums[1] ? kSumWork : 0;
+  uint32_t WorkIn(const CellLights* known, bool is_sheet) const {
+    const size_t lights = scene_.lights().size();
+    if (is_sheet) {
+      return kSheetWork + (known == nullptr ? SheetWorkOfUnknown(lights)
+                                            : known->rest_of_tasks * kSheetLightWork);
+    }
+    if (known == nullptr) return kCellWork + WorkOfUnknown(lights);
+    uint32_t work = kCellWork;
+    work += known->sums[0] || known->sums[1] ? kSumWork : 0;
     for (const LightTask& task : known->tasks) {
       if (task.kind == LightTask::Kind::kSummed && reader_.epsilon() > 0) continue;
       work += kLightWork;
