@@ -15,6 +15,12 @@ double Share(uint64_t part, uint64_t whole) {
 
 std::string Ratio(double value) { return absl::StrFormat("%.2f", value); }
 
+nlohmann::json DoubtsJson(const CellStudyRow& row) {
+  nlohmann::json json = nlohmann::json::object();
+  for (size_t d = 1; d < kDoubtCount; ++d) json[std::string(kDoubtNames[d])] = row.doubts[d];
+  return json;
+}
+
 }  // namespace
 
 uint64_t CertifyReport::Violations() const {
@@ -57,6 +63,28 @@ std::string CellTable(const CertifyReport& report) {
     line.push_back(Ratio(row.accepted_us / std::max(1e-9, row.shades_us)));
     line.push_back(Ratio(row.partly_us / std::max(1e-9, row.accepted_us)));
     line.push_back(Ratio(row.refused_us / std::max(1e-9, row.accepted_us)));
+    table.AddRow(line);
+  }
+  return table.ToString();
+}
+
+std::string DoubtTable(const CertifyReport& report) {
+  std::vector<TableColumn> columns = {{"edge", Align::kRight}};
+  for (size_t d = 1; d < kDoubtCount; ++d) {
+    columns.push_back({std::string(kDoubtNames[d]), Align::kRight});
+  }
+  for (const double epsilon : report.cell_options.epsilons) {
+    columns.push_back({absl::StrFormat("bound > %.2f", epsilon), Align::kRight});
+  }
+  Table table(columns);
+  for (const CellStudyRow& row : report.cells) {
+    std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge)};
+    for (size_t d = 1; d < kDoubtCount; ++d) {
+      line.push_back(Percent(Share(row.doubts[d], row.cells)));
+    }
+    for (const uint64_t certified : row.certified) {
+      line.push_back(Percent(Share(row.same_paths - certified, row.cells)));
+    }
     table.AddRow(line);
   }
   return table.ToString();
@@ -118,6 +146,7 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"cells", row.cells},
                              {"same_paths", row.same_paths},
                              {"partly", row.partly},
+                             {"doubts", DoubtsJson(row)},
                              {"epsilons", report.cell_options.epsilons},
                              {"certified", row.certified},
                              {"paper", row.paper},

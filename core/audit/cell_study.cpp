@@ -109,6 +109,7 @@ class SceneStudy {
     (same ? row.accepted_us : partly ? row.partly_us : row.refused_us) += took;
     row.same_paths += same ? 1 : 0;
     row.partly += partly ? 1 : 0;
+    if (!same) ++row.doubts[static_cast<size_t>(paths.doubt)];
     const double before_shades = NowUs();
     const Corners corners = Shade(cell);
     if (same) row.shades_us += NowUs() - before_shades;
@@ -182,6 +183,7 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
     to.certified[i] += from.certified[i];
     to.paper[i] += from.paper[i];
   }
+  for (size_t i = 0; i < from.doubts.size(); ++i) to.doubts[i] += from.doubts[i];
   to.queries += from.queries;
   to.violations += from.violations;
   to.replay_differences += from.replay_differences;
