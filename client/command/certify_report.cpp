@@ -43,8 +43,9 @@ std::string CellTable(const CertifyReport& report) {
     columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
     columns.push_back({"paper's", Align::kRight});
   }
-  for (const char* title : {"rays", "violations", "error/bound", "replay differs", "cell/16 shades",
-                            "partly/accepted", "refused/accepted"}) {
+  for (const char* title :
+       {"rays", "violations", "error/bound", "replay differs", "cell/16 shades", "partly/accepted",
+        "refused/accepted", "rays accepted", "rays partly"}) {
     columns.push_back({title, Align::kRight});
   }
   Table table(columns);
@@ -63,6 +64,8 @@ std::string CellTable(const CertifyReport& report) {
     line.push_back(Ratio(row.accepted_us / std::max(1e-9, row.shades_us)));
     line.push_back(Ratio(row.partly_us / std::max(1e-9, row.accepted_us)));
     line.push_back(Ratio(row.refused_us / std::max(1e-9, row.accepted_us)));
+    line.push_back(Ratio(Share(row.same_path_rays, row.same_paths)));
+    line.push_back(Ratio(Share(row.partly_rays, row.partly)));
     table.AddRow(line);
   }
   return table.ToString();
@@ -154,6 +157,8 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"violations", row.violations},
                              {"largest_error_over_bound", row.largest_error},
                              {"replay_differences", row.replay_differences},
+                             {"same_path_rays", row.same_path_rays},
+                             {"partly_rays", row.partly_rays},
                              {"accepted_us", row.accepted_us},
                              {"partly_us", row.partly_us},
                              {"refused_us", row.refused_us},

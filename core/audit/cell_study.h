@@ -35,6 +35,8 @@ struct CellStudyRow {
   uint64_t violations = 0;          // whose error is beyond the cell's bound
   uint64_t replay_differences = 0;  // answers along the cell's lists that differ by a bit
   double largest_error = 0;         // relative to the bound
+  // Rays of a path that were followed, the first one included, in the cells of both kinds.
+  uint64_t same_path_rays = 0, partly_rays = 0;
   // Microseconds for a cell: certified ones, those that are partly known, those of which nothing
   // is, and sixteen classical shades of the certified ones' corners.
   double accepted_us = 0, partly_us = 0, refused_us = 0, shades_us = 0;
