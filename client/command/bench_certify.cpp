@@ -119,7 +119,10 @@ void Print(const BenchCertifyFlags& flags, const CertifyReport& report) {
   if (!report.cells.empty()) {
     std::cout << "Random 4D cells, edges relative to the object's bounding box (seed "
               << flags.cells.seed << ")\n"
-              << CellTable(report) << "\n";
+              << CellTable(report)
+              << "\nWhy cells are refused, as shares of all of them: the first "
+              << "doubt about their paths, or too large a bound\n"
+              << DoubtTable(report) << "\n";
   }
   if (!report.lights.empty()) {
     std::cout << "Lights over " << report.lights_scene << ", " << flags.frames.side << " x "

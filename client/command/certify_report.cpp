@@ -15,6 +15,12 @@ double Share(uint64_t part, uint64_t whole) {
 
 std::string Ratio(double value) { return absl::StrFormat("%.2f", value); }
 
+nlohmann::json DoubtsJson(const CellStudyRow& row) {
+  nlohmann::json json = nlohmann::json::object();
+  for (size_t d = 1; d < kDoubtCount; ++d) json[std::string(kDoubtNames[d])] = row.doubts[d];
+  return json;
+}
+
 }  // namespace
 
 uint64_t CertifyReport::Violations() const {
@@ -37,8 +43,9 @@ std::string CellTable(const CertifyReport& report) {
     columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
     columns.push_back({"paper's", Align::kRight});
   }
-  for (const char* title : {"rays", "violations", "error/bound", "replay differs", "cell/16 shades",
-                            "partly/accepted", "refused/accepted"}) {
+  for (const char* title :
+       {"rays", "violations", "error/bound", "replay differs", "cell/16 shades", "partly/accepted",
+        "refused/accepted", "rays accepted", "rays partly"}) {
     columns.push_back({title, Align::kRight});
   }
   Table table(columns);
@@ -57,6 +64,30 @@ std::string CellTable(const CertifyReport& report) {
     line.push_back(Ratio(row.accepted_us / std::max(1e-9, row.shades_us)));
     line.push_back(Ratio(row.partly_us / std::max(1e-9, row.accepted_us)));
     line.push_back(Ratio(row.refused_us / std::max(1e-9, row.accepted_us)));
+    line.push_back(Ratio(Share(row.same_path_rays, row.same_paths)));
+    line.push_back(Ratio(Share(row.partly_rays, row.partly)));
+    table.AddRow(line);
+  }
+  return table.ToString();
+}
+
+std::string DoubtTable(const CertifyReport& report) {
+  std::vector<TableColumn> columns = {{"edge", Align::kRight}};
+  for (size_t d = 1; d < kDoubtCount; ++d) {
+    columns.push_back({std::string(kDoubtNames[d]), Align::kRight});
+  }
+  for (const double epsilon : report.cell_options.epsilons) {
+    columns.push_back({absl::StrFormat("bound > %.2f", epsilon), Align::kRight});
+  }
+  Table table(columns);
+  for (const CellStudyRow& row : report.cells) {
+    std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge)};
+    for (size_t d = 1; d < kDoubtCount; ++d) {
+      line.push_back(Percent(Share(row.doubts[d], row.cells)));
+    }
+    for (const uint64_t certified : row.certified) {
+      line.push_back(Percent(Share(row.same_paths - certified, row.cells)));
+    }
     table.AddRow(line);
   }
   return table.ToString();
@@ -118,6 +149,7 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"cells", row.cells},
                              {"same_paths", row.same_paths},
                              {"partly", row.partly},
+                             {"doubts", DoubtsJson(row)},
                              {"epsilons", report.cell_options.epsilons},
                              {"certified", row.certified},
                              {"paper", row.paper},
@@ -125,6 +157,8 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"violations", row.violations},
                              {"largest_error_over_bound", row.largest_error},
                              {"replay_differences", row.replay_differences},
+                             {"same_path_rays", row.same_path_rays},
+                             {"partly_rays", row.partly_rays},
                              {"accepted_us", row.accepted_us},
                              {"partly_us", row.partly_us},
                              {"refused_us", row.refused_us},

@@ -28,6 +28,8 @@ struct CertifyReport {
 };
 
 std::string CellTable(const CertifyReport& report);
+// Why cells are refused: shares of all cells.
+std::string DoubtTable(const CertifyReport& report);
 std::string LightTable(const CertifyReport& report);
 std::string FrameTable(const CertifyReport& report);
 nlohmann::json CertifyJson(const CertifyReport& report);

@@ -109,6 +109,9 @@ class SceneStudy {
     (same ? row.accepted_us : partly ? row.partly_us : row.refused_us) += took;
     row.same_paths += same ? 1 : 0;
     row.partly += partly ? 1 : 0;
+    if (same) row.same_path_rays += paths.steps.size();
+    if (partly) row.partly_rays += paths.steps.size();
+    if (!same) ++row.doubts[static_cast<size_t>(paths.doubt)];
     const double before_shades = NowUs();
     const Corners corners = Shade(cell);
     if (same) row.shades_us += NowUs() - before_shades;
@@ -182,10 +185,13 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
     to.certified[i] += from.certified[i];
     to.paper[i] += from.paper[i];
   }
+  for (size_t i = 0; i < from.doubts.size(); ++i) to.doubts[i] += from.doubts[i];
   to.queries += from.queries;
   to.violations += from.violations;
   to.replay_differences += from.replay_differences;
   to.largest_error = std::max(to.largest_error, from.largest_error);
+  to.same_path_rays += from.same_path_rays;
+  to.partly_rays += from.partly_rays;
   to.accepted_us += from.accepted_us;
   to.partly_us += from.partly_us;
   to.refused_us += from.refused_us;

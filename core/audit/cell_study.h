@@ -1,10 +1,12 @@
 // How many random 4D cells the two judges accept, what that costs, and whether it is true.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "core/certify/cell_paths.h"
 #include "core/render/worker_pool.h"
 
 namespace linetree {
@@ -27,10 +29,14 @@ struct CellStudyRow {
   uint64_t partly = 0;                     // others that save some search all the same
   uint64_t same_paths = 0;                 // all rays certainly meet the same surfaces and lights
   std::vector<uint64_t> certified, paper;  // accepted, by epsilon
-  uint64_t queries = 0;                    // rays inside certified cells
-  uint64_t violations = 0;                 // whose error is beyond the cell's bound
-  uint64_t replay_differences = 0;         // answers along the cell's lists that differ by a bit
-  double largest_error = 0;                // relative to the bound
+  // The others, by the first reason why not all rays certainly take the same path.
+  std::array<uint64_t, kDoubtCount> doubts{};
+  uint64_t queries = 0;             // rays inside certified cells
+  uint64_t violations = 0;          // whose error is beyond the cell's bound
+  uint64_t replay_differences = 0;  // answers along the cell's lists that differ by a bit
+  double largest_error = 0;         // relative to the bound
+  // Rays of a path that were followed, the first one included, in the cells of both kinds.
+  uint64_t same_path_rays = 0, partly_rays = 0;
   // Microseconds for a cell: certified ones, those that are partly known, those of which nothing
   // is, and sixteen classical shades of the certified ones' corners.
   double accepted_us = 0, partly_us = 0, refused_us = 0, shades_us = 0;

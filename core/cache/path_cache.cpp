@@ -8,7 +8,8 @@ namespace linetree {
 
 // The trees for one PathLimits.
 struct PathCache::Forest {
-  Forest(const Scene& scene, const PathLimits& path_limits) : limits(path_limits), store(scene) {}
+  Forest(const Scene& scene, const PathLimits& path_limits, uint64_t memory_bytes)
+      : limits(path_limits), store(scene, memory_bytes) {}
   PathLimits limits;
   TreeStore<PathTree> store;
   uint32_t last_used = 0;
@@ -117,7 +118,9 @@ PathCache::Forest& PathCache::OpenForest(const PathLimits& limits) {
         std::min_element(forests_.begin(), forests_.end(),
                          [](const auto& a, const auto& b) { return a->last_used < b->last_used; }));
   }
-  forests_.push_back(std::make_unique<Forest>(tracer_.scene(), limits));
+  const uint64_t used = UsedBytes();
+  forests_.push_back(std::make_unique<Forest>(tracer_.scene(), limits,
+                                              memory_bytes_ > used ? memory_bytes_ - used : 0));
   return *forests_.back();
 }
 

@@ -22,7 +22,7 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
       summer_(tracer.scene()),
       min_uses_(min_uses),
       memory_bytes_(memory_bytes),
-      store_(tracer.scene()) {}
+      store_(tracer.scene(), memory_bytes) {}
 
 SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon)
     : cache_(cache), epsilon_(epsilon), lock_(cache.mutex_) {}

@@ -19,14 +19,16 @@ class TreeStore {
  public:
   using Node = typename Tree::Node;
 
-  explicit TreeStore(const Scene& scene)
-      : scene_(scene), trees_(scene.objects.size()), wanted_(scene.objects.size()) {}
+  // What the store holds for every object of the scene, trees or not, counts as well: where
+  // `memory_bytes` have no room for it, there are no trees.
+  TreeStore(const Scene& scene, uint64_t memory_bytes) : scene_(scene) { MakeIndex(memory_bytes); }
 
   // Null when the object has no tree.
-  Tree* Get(size_t object) const { return trees_[object].get(); }
+  Tree* Get(size_t object) const { return trees_.empty() ? nullptr : trees_[object].get(); }
 
   // Readers may not build; asking for a tree is all they do. May run at the same time as itself.
   void Want(size_t object) const {
+    if (wanted_.empty()) return;
     std::atomic<bool>& wanted = wanted_[object];
     if (!wanted.load(std::memory_order_relaxed)) wanted.store(true, std::memory_order_relaxed);
   }
@@ -34,6 +36,7 @@ class TreeStore {
   // that may_grow(size_t object) -> bool lets grow.
   template <class Fn>
   void PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
+    MakeIndex(memory_bytes);
     for (size_t object = 0; object < trees_.size(); ++object) {
       if (!wanted_[object].exchange(false, std::memory_order_relaxed) || trees_[object]) continue;
       if (!may_grow(object)) continue;
@@ -69,13 +72,14 @@ class TreeStore {
     return true;
   }
 
-  // Takes back blocks of leaves, those used longest ago first, and when there are none left whole
-  // trees, while the store holds more than `target` bytes.
+  // Takes back blocks of leaves, those used longest ago first, when there are none left whole
+  // trees, and then all the rest, while the store holds more than `target` bytes.
   void Evict(uint64_t target) {
     while (byte_size_ > target) {
       std::vector<std::pair<uint32_t, Node*>> victims = ParentsOfLeaves();
       if (victims.empty()) {
         DropTrees(target);
+        if (byte_size_ > target) Clear();
         return;
       }
       std::stable_sort(victims.begin(), victims.end(),
@@ -88,7 +92,8 @@ class TreeStore {
   }
 
   void Clear() {
-    for (auto& tree : trees_) tree.reset();
+    trees_ = std::vector<std::unique_ptr<Tree>>();
+    wanted_ = std::vector<std::atomic<bool>>();
     byte_size_ = 0;
     cells_ = 0;
   }
@@ -104,12 +109,23 @@ class TreeStore {
   uint64_t byte_size() const { return byte_size_; }
   uint64_t cell_count() const { return cells_; }
   uint64_t CountBytes() const {
-    uint64_t bytes = 0;
+    uint64_t bytes = IndexBytes();
     ForEachTree([&](size_t, const Tree& tree) { bytes += tree.CountBytes(); });
     return bytes;
   }
 
  private:
+  void MakeIndex(uint64_t memory_bytes) {
+    const size_t objects = scene_.objects.size();
+    if (!trees_.empty() || objects * (sizeof(trees_[0]) + sizeof(wanted_[0])) > memory_bytes)
+      return;
+    trees_.resize(objects);
+    wanted_ = std::vector<std::atomic<bool>>(objects);
+    byte_size_ += IndexBytes();
+  }
+  uint64_t IndexBytes() const {
+    return trees_.capacity() * sizeof(trees_[0]) + wanted_.capacity() * sizeof(wanted_[0]);
+  }
   std::vector<std::pair<uint32_t, Node*>> ParentsOfLeaves() const {
     std::vector<std::pair<uint32_t, Node*>> parents;
     ForEachTree([&](size_t, Tree& tree) {
@@ -155,6 +171,7 @@ class TreeStore {
   }
 
   const Scene& scene_;
+  // Empty where there is no room for them:
   std::vector<std::unique_ptr<Tree>> trees_;       // by object
   mutable std::vector<std::atomic<bool>> wanted_;  // by object: a reader found no tree
   uint64_t byte_size_ = 0;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/trace/path_lists.h"
@@ -12,6 +14,21 @@
 #include "core/tree/verdict.h"
 
 namespace linetree {
+
+// Why not all rays of a cell certainly meet the same surfaces and lights.
+enum class Doubt : uint8_t {
+  kNone,
+  kFirstFace,   // rays may meet other faces of the object, or pass it
+  kBranchFace,  // reflected or refracted rays may meet other faces than the centre ray does
+  kBetween,     // an object may come between the ends of a branch
+  kRefraction,  // some rays may be reflected totally, or the medium around is not certain
+  kShadow,      // a light may be hidden from some hits and not from others
+  kBound,       // a highlight or the place of a hit has no finite bound
+  kTooLong,     // more than kMaxPathSteps branches
+};
+inline constexpr int kDoubtCount = 8;
+inline constexpr std::array<std::string_view, kDoubtCount> kDoubtNames = {
+    "none", "first_face", "branch_face", "between", "refraction", "shadow", "bound", "too_long"};
 
 // Movable, not copyable: steps point into `objects`.
 struct CellPaths {
@@ -27,6 +44,7 @@ struct CellPaths {
   // kCertified: every ray meets the same surfaces and sees the same lights, `spread` bounds the
   // interpolant's error. Otherwise the first reason why not, and only `steps` may be used.
   Verdict verdict = Verdict::kUntried;
+  Doubt doubt = Doubt::kNone;  // the same reason, in more detail
   // Largest |interpolant - classical| / max(classical, floor) over the three channels, proved.
   double spread = std::numeric_limits<double>::infinity();
   std::unique_ptr<Interpolant> interpolant;

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "core/certify/cell_paths.h"
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
@@ -19,10 +20,27 @@
 LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
 
-// An upright box about a cloud, two of its faces across `normal`.
-inline PatchHull HullAbout(const PointCloud& cloud, const Vec3d& normal) {
+// A unit vector across `normal`: where the longest of the cell's edges runs, along which its hits
+// lie.
+inline Vec3d AlongSurface(const PointCloud& cloud, const Vec3d& normal) {
+  Vec3d longest;
+  for (const size_t corner : {1, 2, 4, 8}) {
+    const Vec3d edge = cloud.points[corner] - cloud.points[0];
+    const Vec3d along = edge - normal * Dot(normal, edge);
+    // What is left of much longer ones does not lie across the normal.
+    if (LengthSquared(along) < LengthSquared(edge) / 16) continue;
+    if (LengthSquared(along) > LengthSquared(longest)) longest = along;
+  }
+  const double length = Length(longest);
+  if (length > 0) return longest * (1 / length);
   const Vec3d aside = std::abs(normal.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = Normalized(Cross(normal, aside));
+  return Normalized(Cross(normal, aside));
+}
+
+// An upright box about a cloud, two of its faces across `normal`, `margin` wider on all sides than
+// it has to be: what is hidden by one convex object then stays away from the shadow's border.
+inline PatchHull HullAbout(const PointCloud& cloud, const Vec3d& normal, double margin) {
+  const Vec3d u = AlongSurface(cloud, normal);
   const Vec3d axes[3] = {normal, u, Cross(normal, u)};
   const Vec3d& origin = cloud.points[0];
   double from[3], to[3];
@@ -34,7 +52,7 @@ inline PatchHull HullAbout(const PointCloud& cloud, const Vec3d& normal) {
       to[i] = std::max(to[i], along);
     }
     // The axes are orthonormal to a few roundings.
-    const double wider = cloud.slack + 8 * kOutward * (to[i] - from[i]);
+    const double wider = margin + cloud.slack + 8 * kOutward * (to[i] - from[i]);
     from[i] -= wider;
     to[i] += wider;
   }
@@ -57,14 +75,14 @@ class LightTerms {
       : context_(context), sum_(sum) {}
 
   // Adds all lights at the hits of rays of unit `direction`; `colour` is the path's weight so far.
-  // kCertified, or the first reason why some light's part is not a smooth function of the ray.
-  Verdict Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
-              const PointCloud& cloud) {
+  // kNone, or the first reason why some light's part is not a smooth function of the ray.
+  Doubt Add(const JetHit<D>& hit, const Vector& direction, int object, const Rgb& colour,
+            const PointCloud& cloud) {
     const Scene& scene = context_.scene;
-    if (!cloud.IsFinite()) return Verdict::kPeak;
+    if (!cloud.IsFinite()) return Doubt::kBound;
     const Vec3d normal = hit.MiddleNormal();
-    if (!(LengthSquared(normal) > 0)) return Verdict::kPeak;
-    const PatchHull hull = HullAbout(cloud, Normalized(normal));
+    if (!(LengthSquared(normal) > 0)) return Doubt::kBound;
+    const PatchHull hull = HullAbout(cloud, Normalized(normal), kSurfaceSlack * hit.shape->reach);
     const Material& material = scene.MaterialOf(object);
     // All decisions first: most cells that are refused are refused by one of them.
     shining_.clear();
@@ -73,21 +91,18 @@ class LightTerms {
       const Jet facing = Facing(hit, light);
       const double scale = FacingScale(hit, light);
       if (IsNegative(facing, scale)) continue;
-      const LightKnowledge knowledge =
-          context_.lights.KnowledgeOf(object, hull, static_cast<int>(i));
-      if (knowledge == LightKnowledge::kOff) continue;
-      Rgb filter{1, 1, 1};
-      if (!IsLit(knowledge, hit, object, light, filter)) return Verdict::kBlocker;
+      const LightArrival arrival = context_.lights.ArrivalOf(object, hull, static_cast<int>(i));
+      if (arrival.knowledge == LightKnowledge::kOff) continue;
+      Rgb filter = arrival.filter;
+      if (!IsLit(arrival.knowledge, hit, object, light, filter)) return Doubt::kShadow;
       if (IsBlack(filter)) continue;
       const bool faces = IsPositive(facing, scale);
-      // Where the light sets, the highlight breaks off.
-      if (!faces && !IsBlack(material.specular)) return Verdict::kSelfShadow;
       shining_.push_back({&light, colour * filter * light.irradiance, faces});
     }
     for (const Shining& s : shining_) {
-      if (!AddLight(hit, direction, *s.light, material, s.arriving, s.faces)) return Verdict::kPeak;
+      if (!AddLight(hit, direction, *s.light, material, s.arriving, s.faces)) return Doubt::kBound;
     }
-    return Verdict::kCertified;
+    return Doubt::kNone;
   }
 
  private:
@@ -111,7 +126,7 @@ class LightTerms {
     return hit.shape->reach + std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
   }
 
-  // Whether the light certainly arrives, as what `filter` leaves of it.
+  // Whether the light certainly arrives; what the object itself takes of it is added to `filter`.
   bool IsLit(LightKnowledge knowledge, const JetHit<D>& hit, int object, const Light& light,
              Rgb& filter) const {
     if (knowledge != LightKnowledge::kOn) return false;
@@ -124,7 +139,7 @@ class LightTerms {
       at.points.fill(light.position);
       if (!IsCertainlyOutside(at, shape, context_.search().Surplus(object))) return false;
     }
-    filter = context_.scene.MaterialOf(object).transmit;
+    filter = filter * context_.scene.MaterialOf(object).transmit;
     return true;
   }
 
@@ -154,12 +169,14 @@ class LightTerms {
     const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
     const auto faded = [&](const Jet& f) -> Jet { return fades ? Jet(f * strength) : f; };
     if (!IsBlack(material.diffuse)) {
-      sum_.Add(arriving * material.diffuse, faded(faces ? cosine : Positive(cosine)));
+      const Jet light_term = faded(cosine);
+      sum_.Add(arriving * material.diffuse, faces ? light_term : Positive(light_term));
     }
     if (!shines) return true;
     Jet highlight;
     if (!Highlight(hit, -along, cosine, material.exponent, highlight)) return false;
-    sum_.Add(arriving * material.specular, faded(highlight));
+    highlight = faded(highlight);
+    sum_.Add(arriving * material.specular, faces ? highlight : BrokenOff(highlight));
     return true;
   }
 
@@ -178,19 +195,33 @@ class LightTerms {
     return square;
   }
 
-  // max(0, f): known by its range alone.
-  static Jet Positive(const Jet& f) {
-    const Pack<Jet::kCorners> zero = Pack<Jet::kCorners>::All(0);
+  // A function that is not smooth, by its corners and range. All of the error of interpolating it
+  // is in `slack`; for sums only, since nothing else may be done to such a jet.
+  static Jet Rough(const typename Jet::Corners& k, double least, double most, double error) {
     Jet r;
-    r.v = {std::max(0.0, f.lo()), std::max(0.0, f.hi())};
-    r.k = Max(zero, f.k);
-    r.slack = f.slack;
-    // Not smooth: no bound on derivatives is claimed, so any range of values makes the error.
-    r.ds = IntervalPack<2 * D>::All({-kUnbounded, kUnbounded});
+    r.v = {least, most};
+    r.k = k;
+    r.slack = std::min(error, RoundUp(most - least));
+    r.ds = IntervalPack<2 * D>::All({0, 0});
     return r;
   }
+  // max(0, f), interpolated between max(0, k). With corners k in [-n, p], chord of max(0, .) over
+  // that interval: the interpolant Q+ is no less than max(0, Q), being the mean of a convex
+  // function, and no more than the chord at Q, which exceeds max(0, Q) by n p / (n + p) at most;
+  // and max(0, Q) is no farther from max(0, f) than Q is from f.
+  static Jet Positive(const Jet& f) {
+    const double n = std::max(0.0, -SmallestLane(f.k)), p = std::max(0.0, LargestLane(f.k));
+    const double chord = n > 0 && p > 0 ? n * (p / (n + p)) : 0;
+    const auto corners = Max(Pack<Jet::kCorners>::All(0), f.k);
+    return Rough(corners, std::max(0.0, f.lo()), std::max(0.0, f.hi()),
+                 Above(f.InterpolationError() + chord));
+  }
+  // f at some rays and 0 at the others: anything in its range.
+  static Jet BrokenOff(const Jet& f) {
+    const double most = std::max(0.0, f.hi());
+    return Rough(Pack<Jet::kCorners>::All(most / 2), 0, most, Above(most / 2));
+  }
   static constexpr double kMostFading = 1e30;
-  static constexpr double kUnbounded = 1e30;
 
   // `opening` is l.v, the cosine between the light and the way back.
   static bool Highlight(const JetHit<D>& hit, Jet opening, const Jet& cosine, double exponent,

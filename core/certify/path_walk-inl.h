@@ -31,7 +31,7 @@ class PathWalk {
     const Hit middle = context_.tracer.IntersectObjectLine(task_.object, task_.middle.origin,
                                                            task_.middle.direction);
     if (!middle.IsHit() || !FirstHit(middle, hit, direction)) {
-      paths_.verdict = Verdict::kGap;
+      Refuse(Doubt::kFirstFace);
       return std::move(paths_);
     }
     paths_.decided = true;
@@ -67,10 +67,30 @@ class PathWalk {
     step.side = hit.side;
   }
 
-  void Refuse(Verdict reason) {
-    if (paths_.verdict == Verdict::kUntried) paths_.verdict = reason;
+  void Refuse(Doubt reason) {
+    if (!MayInterpolate()) return;
+    paths_.doubt = reason;
+    paths_.verdict = VerdictOf(reason);
   }
   bool MayInterpolate() const { return paths_.verdict == Verdict::kUntried; }
+  static Verdict VerdictOf(Doubt doubt) {
+    switch (doubt) {
+      case Doubt::kNone:
+        return Verdict::kUntried;
+      case Doubt::kFirstFace:
+      case Doubt::kBranchFace:
+        return Verdict::kGap;
+      case Doubt::kBetween:
+      case Doubt::kShadow:
+      case Doubt::kTooLong:
+        return Verdict::kBlocker;
+      case Doubt::kRefraction:
+        return Verdict::kFunnel;
+      case Doubt::kBound:
+        return Verdict::kPeak;
+    }
+    return Verdict::kUntried;
+  }
 
   static Vector Polynomial(const Vec3d& constant, const std::array<Vec3d, 4>& by,
                            const CellBox& box) {
@@ -105,7 +125,7 @@ class PathWalk {
     direction = ray.direction * inverse_length;
     hit.cosine = hit.cosine * inverse_length;
     hit.cosine.AssumeWithin(0, 1);
-    if (!shape.IsThin() && !evaluator.IsContained(hit)) Refuse(Verdict::kGap);
+    if (!shape.IsThin() && !evaluator.IsContained(hit)) Refuse(Doubt::kFirstFace);
     return true;
   }
 
@@ -128,7 +148,7 @@ class PathWalk {
           break;
         case Refraction::kUnknown:
           paths_.decided = false;
-          Refuse(Verdict::kFunnel);
+          Refuse(Doubt::kRefraction);
           break;
       }
     }
@@ -149,9 +169,9 @@ class PathWalk {
   void AddTerms(const JetHit<4>& hit, const Hit& middle, const Leg& leg, const Material& material) {
     sum_.AddConstant(leg.colour * AmbientTerm<double>(material, context_.scene.ambient));
     if (!UsesLights(material)) return;
-    const Verdict verdict =
+    const Doubt doubt =
         terms_.Add(hit, leg.direction, middle.object, leg.colour, CloudOf(hit.point));
-    if (verdict != Verdict::kCertified) Refuse(verdict);
+    if (doubt != Doubt::kNone) Refuse(doubt);
   }
 
   void Transmit(const JetHit<4>& hit, const Hit& middle, const Leg& leg, const Material& material,
@@ -256,7 +276,7 @@ class PathWalk {
   // The step of a branch, as an index; 0 where the limit of steps leaves no room.
   int32_t Follow(const Leg& leg) {
     if (paths_.steps.size() >= kMaxPathSteps) {
-      Refuse(Verdict::kBlocker);
+      Refuse(Doubt::kTooLong);
       return 0;
     }
     const auto index = paths_.steps.size();
@@ -315,7 +335,7 @@ class PathWalk {
     const PointCloud begin = CloudOf(leg.origin);
     if (!begin.IsFinite() || !end.IsFinite()) {
       paths_.decided = false;
-      Refuse(Verdict::kPeak);
+      Refuse(Doubt::kBound);
       return;
     }
     const RayBundle bundle(context_.scene, context_.search(), leg.start, begin, end);
@@ -323,7 +343,7 @@ class PathWalk {
         bundle.Candidates(ends ? middle.object : kNoObject, inherited);
     if (!certain || !candidates.empty()) {
       paths_.decided = false;
-      Refuse(certain ? Verdict::kBlocker : Verdict::kGap);
+      Refuse(certain ? Doubt::kBetween : Doubt::kBranchFace);
     }
     if (candidates.size() > kMaxCandidates) return;
     if (ends) {

@@ -27,10 +27,15 @@ class RadianceSum {
     }
   }
 
-  // A term of every ray: colour * f. The colour is not negative.
-  void Add(const Rgb& colour, const Jet& f) {
-    // Bounded twice: by the curvature, and by the range in which both f and its interpolant lie.
-    const double error = std::min(f.InterpolationError(), f.v.Width() + f.slack);
+  // A term of every ray: colour * f. Neither is negative.
+  void Add(const Rgb& colour, Jet f) {
+    // Where the curvature says less than the range, the middle of the range is better than corners.
+    const double half = RoundUp(f.v.Width() / 2);
+    if (half < (f.ExcessOverQ() + f.ExcessUnderQ()) / 2 + f.slack) {
+      f.k = Pack<kCorners>::All(f.Middle());
+      f.ds = IntervalPack<2 * D>::All({0, 0});
+      f.slack = Above(half + kOutward * f.v.Magnitude());
+    }
     for (int i = 0; i < 3; ++i) {
       if (colour[i] == 0) continue;
       Channel& c = channels_[static_cast<size_t>(i)];
@@ -38,7 +43,6 @@ class RadianceSum {
       c.curvature = c.curvature + f.s() * colour[i];
       c.least = RoundDown(c.least + RoundDown(colour[i] * std::max(0.0, f.lo())));
       c.most = RoundUp(c.most + RoundUp(colour[i] * std::max(0.0, f.hi())));
-      c.error = RoundUp(c.error + RoundUp(colour[i] * error));
       c.slack = RoundUp(c.slack + RoundUp(colour[i] * f.slack));
     }
   }
@@ -49,12 +53,10 @@ class RadianceSum {
   double Spread(double floor) const {
     double spread = 0;
     for (const Channel& c : channels_) {
-      const double summed =
-          Above(SumOfLanes(Magnitudes(c.curvature)) / 8) + c.slack + kSumRounding * c.most;
-      const double error = std::min(c.error + kSumRounding * c.most, summed);
+      const double error = CentringOf(c).error + c.slack + kSumRounding * c.most;
       const double least = std::max(c.least, floor);
-      const bool is_bounded = std::isfinite(c.error) && std::isfinite(summed) && c.least >= 0 &&
-                              c.most + c.error < std::numeric_limits<float>::max();
+      const bool is_bounded = std::isfinite(error) && c.least >= 0 &&
+                              c.most + error < std::numeric_limits<float>::max();
       if (!is_bounded) return std::numeric_limits<double>::infinity();
       // What is stored is off by kStorageRounding of itself, at most of c.most + error.
       spread = std::max(spread, Above((error + kStorageRounding * (c.most + error)) / least));
@@ -67,8 +69,9 @@ class RadianceSum {
     for (size_t i = 0; i < 3; ++i) {
       double corners[kCorners];
       channels_[i].corners.Store(corners);
+      const double shift = CentringOf(channels_[i]).shift;
       for (size_t m = 0; m < kCorners; ++m) {
-        interpolant.corner[m][i] = static_cast<float>(std::max(0.0, corners[m]));
+        interpolant.corner[m][i] = static_cast<float>(std::max(0.0, corners[m] + shift));
       }
     }
     return interpolant;
@@ -82,8 +85,25 @@ class RadianceSum {
   struct Channel {
     Pack<kCorners> corners;
     IntervalPack<D> curvature;
-    double least = 0, most = 0, error = 0, slack = 0;
+    double least = 0, most = 0, slack = 0;
   };
+  // The interpolant Q of the corners is above the sum f by at most L and below it by at most U
+  // (corner_jet-inl.h). Where f is curved to one side, Q is moved to the middle between its bounds,
+  // Q + (U - L) / 2, but not so far that a corner becomes negative.
+  struct Centring {
+    double shift = 0;
+    double error = 0;  // of the moved interpolant, but for slack
+  };
+  static Centring CentringOf(const Channel& c) {
+    const Pack<D> zero = Pack<D>::All(0);
+    const double over = Above(SumOfLanes(Max(zero, -c.curvature.lo)) / 8);
+    const double under = Above(SumOfLanes(Max(zero, c.curvature.hi)) / 8);
+    Centring centring;
+    const double lowest = std::max(0.0, SmallestLane(c.corners));
+    centring.shift = std::max((over - under) / 2, -lowest);
+    centring.error = Above(std::max(over - centring.shift, under + centring.shift));
+    return centring;
+  }
   Channel channels_[3];
 };
 

@@ -244,7 +244,19 @@ void LightCertifier::FindCandidates(const Bundle& bundle, const LightList& inher
 }
 
 bool LightCertifier::HidesAll(const Bundle& bundle, int object) const {
-  if (!IsBlack(scene_.MaterialOf(object).transmit)) return false;
+  return IsBlack(scene_.MaterialOf(object).transmit) && IsCrossedByAll(bundle, object);
+}
+
+int LightCertifier::CrossingsOfAll(const Bundle& bundle, int object) const {
+  const Shape& shape = scene_.objects[static_cast<size_t>(object)].shape;
+  if (!IsCrossedByAll(bundle, object)) return 0;
+  if (IsPlanar(shape)) return 1;
+  // A point light is outside: IsCrossedByAll wants it away from the object's bounds.
+  const double clearance = bundle.clearance + search_.Surplus(object);
+  return CertainlyApart(bundle.hull.points, shape, clearance) ? 2 : 0;
+}
+
+bool LightCertifier::IsCrossedByAll(const Bundle& bundle, int object) const {
   const Shape& shape = scene_.objects[static_cast<size_t>(object)].shape;
   // An open frustum is not convex: rays may pass through it lengthwise.
   if (const auto* frustum = std::get_if<FrustumShape>(&shape)) {
@@ -279,12 +291,22 @@ LightKnowledge LightCertifier::Decide(const Bundle& bundle, Findings& findings) 
   return kept.size() <= kMaxCandidates ? LightKnowledge::kListed : LightKnowledge::kUnknown;
 }
 
-LightKnowledge LightCertifier::KnowledgeOf(int object, const PatchHull& hull, int light) const {
+LightArrival LightCertifier::ArrivalOf(int object, const PatchHull& hull, int light) const {
   Bundle bundle(object, hull);
   bundle.Aim(light, scene_.lights[static_cast<size_t>(light)], world_);
   Findings findings;
   FindCandidates(bundle, LightList(), findings);
-  return Decide(bundle, findings);
+  LightArrival arrival{Decide(bundle, findings)};
+  if (arrival.knowledge != LightKnowledge::kListed) return arrival;
+  for (const int32_t candidate : findings.kept) {
+    const int crossings = CrossingsOfAll(bundle, candidate);
+    if (crossings == 0) return arrival;
+    for (int i = 0; i < crossings; ++i) {
+      arrival.filter = arrival.filter * scene_.MaterialOf(candidate).transmit;
+    }
+  }
+  arrival.knowledge = LightKnowledge::kOn;
+  return arrival;
 }
 
 namespace {

@@ -7,6 +7,8 @@
 // above the tracer's rounding, is met by none of them. The points from which a convex object K
 // hides L are L + s (K - L), s >= 1, a convex set; if it holds the eight points of H, it holds all
 // of H. Directional lights are the limit: conv(H) + half line.
+// Every ray from such a point to L crosses K; where H is apart from a solid K and L outside, twice,
+// so that what a transparent one leaves of the light is the same for all of H.
 //
 // Contacts. An object that lies behind a plane, with the light in front of it, hides nothing from
 // points in front of the plane, in the tracer's arithmetic too: on their way to the light they move
@@ -108,6 +110,12 @@ struct CellLights {
   }
 };
 
+// What arrives of one light at all points of a hull.
+struct LightArrival {
+  LightKnowledge knowledge = LightKnowledge::kUnknown;
+  Rgb filter{1, 1, 1};  // kOn: what is left by transparent objects, which every shadow ray crosses
+};
+
 class LightCertifier {
  public:
   // Keeps a reference to the tracer, which must outlive it. Without `uses_functions` planar cells
@@ -123,7 +131,7 @@ class LightCertifier {
                      const CellLights* parent) const;
 
   // The same for one light without a parent, and without the candidates.
-  LightKnowledge KnowledgeOf(int object, const PatchHull& hull, int light) const;
+  LightArrival ArrivalOf(int object, const PatchHull& hull, int light) const;
 
  private:
   struct Bundle;
@@ -145,6 +153,10 @@ class LightCertifier {
   static void Finish(const std::vector<size_t>& begins, CellLights& cell);
   // World length.
   double ClearanceTo(const Bundle& bundle, int object) const;
+  // Whether the shadow rays of all points of the hull cross the object.
+  bool IsCrossedByAll(const Bundle& bundle, int object) const;
+  // How often they all do; 0 where that is not certain.
+  int CrossingsOfAll(const Bundle& bundle, int object) const;
   // Whether the object hides the light from every point of the hull.
   bool HidesAll(const Bundle& bundle, int object) const;
 

@@ -65,6 +65,28 @@ TEST_F(SurfaceCacheTest, BytesAreExactAndWithinTheBudget) {
   }
 }
 
+TEST_F(SurfaceCacheTest, WhatIsHeldForEveryObjectCounts) {
+  const uint64_t least = scene_->objects.size() * (sizeof(void*) + sizeof(bool));
+  SurfaceCache cache(tracer_, least);
+  EXPECT_EQ(cache.ByteSize(), least);
+  EXPECT_EQ(cache.CountBytes(), least);
+  cache.SetMemoryBytes(least - 1);
+  EXPECT_EQ(cache.ByteSize(), 0u);
+  SurfaceCache without(tracer_, least - 1);
+  EXPECT_EQ(without.ByteSize(), 0u);
+  Use(without, 1, 100);
+  without.Refine(1, kSerial);
+  EXPECT_EQ(without.ByteSize(), 0u) << "no room for what a tree takes beside itself";
+  // With room again it grows as a new one does.
+  without.SetMemoryBytes(10'000'000);
+  for (int round = 0; round < 3; ++round) {
+    Use(without, 1, 100);
+    without.Refine(1, kSerial);
+  }
+  EXPECT_GT(without.CellCount(), 0u);
+  EXPECT_EQ(without.ByteSize(), without.CountBytes());
+}
+
 TEST_F(SurfaceCacheTest, ASmallerBudgetEvictsAndALargerOneGrowsAgain) {
   SurfaceCache cache(tracer_, 4'000'000);
   const auto work = [&] {

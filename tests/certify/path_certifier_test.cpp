@@ -127,6 +127,74 @@ TEST(PathCertifier, SpreadIsAttained) {
   EXPECT_LE(seen.worst, 1);
 }
 
+// The floor lies in the shadow of a ball, which rays to the light cross twice, and of a pane, which
+// they cross once: what is left of the light is the same everywhere.
+TEST(PathCertifier, LightThroughGlassIsCertain) {
+  Scene scene;
+  const int glass = AddMaterial(scene, Glass({0.7, 0.8, 0.9}, 1.5));
+  Material floor = Matte({0.6, 0.5, 0.4});
+  floor.specular = {0.3, 0.3, 0.3};
+  floor.exponent = 20;
+  AddObject(scene, Disc({0, 0, 0}, {0, 0, 1}, 0.3), AddMaterial(scene, floor));
+  AddObject(scene, Sphere({0, 0, 2}, 1), glass);
+  AddObject(scene, Disc({0, 0, 4}, {0.1, 0, 1}, 2), glass);
+  scene.lights.push_back(PointLight({0, 0, 6}));
+  const Tracer tracer(scene);
+  const PathCertifier certifier(tracer);
+  const ObjectChart chart(scene.objects[0]);
+  Random random(9);
+  Seen seen;
+  for (int i = 0; i < 200; ++i) {
+    const auto cell = CellOf(tracer, chart, 0, 0.02, random);
+    if (!cell) continue;
+    const CellPaths paths = certifier.Certify(0, chart, cell->pair, cell->box, Deep(), nullptr);
+    Check(tracer, chart, *cell, paths, random, 25, seen);
+    ASSERT_FALSE(testing::Test::HasFatalFailure());
+  }
+  EXPECT_GT(seen.certified, 0.95 * seen.followed);
+  EXPECT_GT(seen.certified, 100);
+}
+
+// Where the light sets on a glossy ball, cosines have a kink and the highlight breaks off.
+TEST(PathCertifier, TerminatorsAreBounded) {
+  Scene scene;
+  Material gloss = Matte({0.6, 0.5, 0.4});
+  gloss.specular = {0.5, 0.5, 0.5};
+  gloss.exponent = 10;
+  gloss.ambient = {0.2, 0.2, 0.2};
+  scene.ambient = {1, 1, 1};
+  AddObject(scene, Sphere({0, 0, 0}, 1), AddMaterial(scene, gloss));
+  const Vec3d light{0, 0, 6};
+  scene.lights.push_back(PointLight(light));
+  const Tracer tracer(scene);
+  const PathCertifier certifier(tracer);
+  const ObjectChart chart(scene.objects[0]);
+  Random random(10);
+  Seen seen;
+  for (int i = 0; i < 4000; ++i) {
+    const auto cell = CellOf(tracer, chart, 0, 0.05, random);
+    if (!cell) continue;
+    int facing = 0, rays = 0;
+    for (int m = 0; m < 16; ++m) {
+      RayCoords u;
+      for (int k = 0; k < 4; ++k) u[static_cast<size_t>(k)] = m >> k & 1;
+      const Ray ray = cell->At(chart, u);
+      const Hit hit = tracer.IntersectObjectLine(0, ray.origin, ray.direction);
+      if (!hit.IsHit()) continue;
+      ++rays;
+      facing += Dot(hit.normal, light - hit.point) > 0;
+    }
+    if (facing == 0 || facing == rays) continue;
+    const CellPaths paths = certifier.Certify(0, chart, cell->pair, cell->box, Deep(), nullptr);
+    Check(tracer, chart, *cell, paths, random, 40, seen);
+    ASSERT_FALSE(testing::Test::HasFatalFailure());
+  }
+  std::printf("%d of %d certified, worst error / spread %.4f\n", seen.certified, seen.cells,
+              seen.worst);
+  EXPECT_GT(seen.certified, 100);
+  EXPECT_GT(seen.worst, 0.5);
+}
+
 TEST(PathCertifier, ThinShapesAndOpenFrustums) {
   Scene scene;
   scene.background = {0.2, 0.3, 0.4};
