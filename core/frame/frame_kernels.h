@@ -13,4 +13,9 @@ void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task, uint6
                           const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
                           PacketWorkspace& workspace, PacketCounts& counts);
 
+// Of the packets of a block of rays, those whose bit is set in `packets`.
+void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
+                         const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                         PacketWorkspace& workspace, PacketCounts& counts);
+
 }  // namespace linetree

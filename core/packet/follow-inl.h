@@ -76,6 +76,11 @@ class Follower {
   // sum().
   void Follow(const PathPacket& packet, int depth) {
     FindHitsOf(scene_, packet.rays, hits_, counts_);
+    Shade(packet, depth);
+  }
+
+  // The same where hits() are those of the packet already.
+  void Shade(const PathPacket& packet, int depth) {
     const LaneMask active = packet.rays.active, missed = active & ~hits_.hit;
     total_ = asked_ = 0;
     if (hits_.hit != 0) {
@@ -95,7 +100,7 @@ class Follower {
     if (digested_) Digest(packet);
   }
 
-  const PacketHits& hits() const { return hits_; }
+  PacketHits& hits() { return hits_; }
   const Floats* sum() const { return sum_; }
 
  private:
