@@ -37,7 +37,7 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
       ->check(CLI::IsMember({"paper", "certified"}))
       ->capture_default_str();
   app.add_option("--lanes", flags.lanes,
-                 "how frames are traced for requests that do not say: scalar, or simd")
+                 "how rays are traced for requests that do not say: scalar, or simd")
       ->check(CLI::IsMember({"scalar", "simd"}))
       ->capture_default_str();
   app.add_option("--max-depth", options.defaults.limits.max_depth,

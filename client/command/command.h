@@ -43,6 +43,7 @@ void AddBenchCertify(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 void AddBenchPeers(CLI::App& bench, Commands& commands);
+void AddBenchRays(CLI::App& bench, Commands& commands);
 void AddBenchSpeed(CLI::App& bench, Commands& commands);
 
 // Writes "linetree: message" as one line to standard error and returns `exit_status`.

@@ -142,7 +142,7 @@ void AddJudgeFlag(CLI::App& app, JudgeKind& judge) {
 void AddLanesFlag(CLI::App& app, Lanes& lanes) {
   const std::map<std::string, Lanes> all = {{"simd", Lanes::kSimd}, {"scalar", Lanes::kScalar}};
   app.add_option("--lanes", lanes,
-                 "How frames are traced. scalar: one by one, in double;\n"
+                 "How rays are traced. scalar: one by one, in double;\n"
                  "simd: sixteen rays at a time, radiance in float, many times as fast")
       ->transform(CLI::CheckedTransformer(all))
       ->type_name("LANES")

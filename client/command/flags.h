@@ -47,10 +47,8 @@ void AddViewFlags(CLI::App& app, ViewFlags& flags);
 // cameras needs --eye and --look-at.
 absl::StatusOr<Camera> ResolveCamera(const v1::SceneInfo& scene, const ViewFlags& flags);
 
-// --mode, --judge, --epsilon and the path's limits, straight into the options.
+// --mode, --judge, --epsilon, --lanes and the path's limits, straight into the options.
 void AddOptionsFlags(CLI::App& app, RenderOptions& options);
-// --lanes, of classical frames; needs --local.
-void AddLanesFlag(CLI::App& app, Lanes& lanes);
 void AddJudgeFlag(CLI::App& app, JudgeKind& judge);
 void AddLanesFlag(CLI::App& app, Lanes& lanes);
 void AddLimitsFlags(CLI::App& app, PathLimits& limits);

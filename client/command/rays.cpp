@@ -26,20 +26,27 @@ struct RaysFlags {
   bool json = false;
 };
 
-// Traces everything that `reader` has and hands out the answers batch by batch.
-absl::StatusOr<FrameStats> TraceAll(Session& session, RayReader& reader,
-                                    const RenderOptions& options,
-                                    const std::function<void(const RayAnswer&)>& on_answer) {
+// What all batches have in common.
+struct RayTotals {
   FrameStats stats;
+  double lane_rounding = 0;
+};
+
+// Traces everything that `reader` has and hands out the answers batch by batch.
+absl::StatusOr<RayTotals> TraceAll(Session& session, RayReader& reader,
+                                   const RenderOptions& options,
+                                   const std::function<void(const RayAnswer&)>& on_answer) {
+  RayTotals totals;
   for (;;) {
     const absl::StatusOr<std::vector<Ray>> rays = reader.Next(kBatch);
     if (!rays.ok()) return rays.status();
-    if (rays->empty()) return stats;
+    if (rays->empty()) return totals;
     const absl::StatusOr<RayBatch> batch =
         session.client->TraceRays(session.scene.name(), *rays, options);
     if (!batch.ok()) return batch.status();
     for (const RayAnswer& answer : batch->answers) on_answer(answer);
-    stats += batch->stats;
+    totals.stats += batch->stats;
+    totals.lane_rounding = batch->lane_rounding;
   }
 }
 
@@ -55,9 +62,10 @@ absl::StatusOr<int> TraceInput(const RaysFlags& flags, std::istream& in, const s
       std::cout << RayAnswerLine(answer);
     }
   };
-  const absl::StatusOr<FrameStats> stats = TraceAll(*session, reader, flags.options, on_answer);
-  if (!stats.ok()) return stats.status();
-  nlohmann::json counters = StatsJson(*stats, 0, 0);
+  const absl::StatusOr<RayTotals> totals = TraceAll(*session, reader, flags.options, on_answer);
+  if (!totals.ok()) return totals.status();
+  nlohmann::json counters = StatsJson(totals->stats, 0, 0);
+  counters["lane_rounding"] = totals->lane_rounding;
   counters["scene"] = session->scene.name();
   counters["scene_version"] = session->scene.scene_version();
   if (flags.json) {
@@ -96,10 +104,12 @@ void AddRays(CLI::App& parent, Commands& commands) {
   AddStatsFlag(*app, flags->stats);
   app->footer(
       "Prints a line for every ray: r g b source object depth\n"
-      "(linear radiance; background, interpolated or traced; -1 and inf where nothing is hit).\n\n"
+      "(linear radiance; background, interpolated or traced; -1 and inf where nothing is hit).\n"
+      "With --lanes simd, radiance is off by lane_rounding more than epsilon (see --stats).\n\n"
       "Examples:\n"
       "  echo 0 1 6 0 0 -1 | linetree rays --scene room --input -\n"
-      "  linetree rays --local --scene scenes/face.textproto --input rays.txt --json");
+      "  linetree rays --local --scene scenes/face.textproto --input rays.txt --json\n"
+      "  linetree rays --scene room --input rays.txt --lanes simd --stats rays.json");
   commands.push_back({app, [flags] { return TraceRays(*flags); }});
 }
 

@@ -46,9 +46,9 @@ struct Answers {
   std::vector<Rgb> radiance;
   std::vector<Source> source;
   FrameStats stats;
-  bool rounded = false;
-  double lane_rounding = 0;  // Frame::lane_rounding
-  // The classical frame that was traced the same way, where that is not in double.
+  bool from_frame = false;   // rounded to float, whatever the lanes
+  double lane_rounding = 0;  // of the Frame or RayBatch
+  // The classical answers that were traced the same way, where that is not in double.
   std::vector<float> same_lanes;
 };
 
@@ -82,16 +82,17 @@ class Auditor {
   absl::Status AskFrame(const Camera& camera, size_t epsilon, const Questions& questions, int side,
                         Lanes lanes);
   absl::Status AskRays(QueryKind kind, size_t count);
+  absl::Status AskRays(QueryKind kind, size_t epsilon, const Questions& questions, Lanes lanes);
   absl::Status Climb(size_t epsilon, size_t count);
 
   // `eye_rays`: asked as pixels, which are traced as they are; others as TraceRays makes them.
   Questions Trace(std::vector<Ray> rays, bool eye_rays) const;
-  absl::StatusOr<Answers> Ask(const Questions& questions, size_t epsilon);
+  absl::StatusOr<Answers> Ask(const Questions& questions, size_t epsilon, Lanes lanes);
   // Compares, counts, keeps violations; returns error over allowed for every question.
   std::vector<double> Judge(QueryKind kind, size_t epsilon, const Questions& questions,
                             const Answers& answers);
-  void Keep(size_t epsilon, const Ray& ray, const Rgb& classical, const Rgb& answer, bool rounded,
-            double error_over_allowed);
+  void Keep(size_t epsilon, const Ray& ray, const Rgb& classical, const Rgb& answer,
+            bool from_frame, double error_over_allowed);
   RenderOptions OptionsOf(size_t epsilon) const;
 
   const SceneAuditRequest& request_;
@@ -136,12 +137,25 @@ Questions Auditor::Trace(std::vector<Ray> rays, bool eye_rays) const {
   return questions;
 }
 
-absl::StatusOr<Answers> Auditor::Ask(const Questions& questions, size_t epsilon) {
-  auto batch = answerer_.TraceRays(host_, questions.rays, OptionsOf(epsilon), pool_);
+absl::StatusOr<Answers> Auditor::Ask(const Questions& questions, size_t epsilon, Lanes lanes) {
+  RenderOptions options = OptionsOf(epsilon);
+  options.lanes = lanes;
+  auto batch = answerer_.TraceRays(host_, questions.rays, options, pool_);
   if (!batch.ok()) return batch.status();
   LT_CHECK(batch->answers.size() == questions.rays.size());
   Answers answers;
+  answers.lane_rounding = batch->lane_rounding;
   answers.stats = batch->stats;
+  if (batch->lane_rounding > 0) {
+    options.mode = Mode::kClassical;
+    const auto classical = host_.TraceRays(questions.rays, options, pool_);
+    if (!classical.ok()) return classical.status();
+    answers.same_lanes.resize(3 * classical->answers.size());
+    for (size_t i = 0; i < answers.same_lanes.size(); ++i) {
+      const Rgb& radiance = classical->answers[i / 3].radiance;
+      answers.same_lanes[i] = static_cast<float>(radiance[static_cast<int>(i % 3)]);
+    }
+  }
   for (const RayAnswer& answer : batch->answers) {
     answers.radiance.push_back(answer.radiance);
     answers.source.push_back(answer.source);
@@ -154,10 +168,11 @@ std::vector<double> Auditor::Judge(QueryKind kind, size_t epsilon, const Questio
   const size_t count = questions.rays.size();
   std::vector<Comparison> results(count);
   const double allowed = request_.epsilons[epsilon];
+  const bool rounded = answers.from_frame || answers.lane_rounding > 0;
   ForChunks(pool_, count, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Rgb &answer = answers.radiance[i], &classical = questions.classical[i];
-      results[i] = answers.rounded
+      results[i] = rounded
                        ? CompareRounded(answer, classical, allowed, floor_, answers.lane_rounding)
                        : Compare(answer, classical, allowed, floor_);
       if (answers.same_lanes.empty()) continue;
@@ -182,8 +197,8 @@ std::vector<double> Auditor::Judge(QueryKind kind, size_t epsilon, const Questio
     tally.max_error_over_allowed = std::max(tally.max_error_over_allowed, errors[i]);
     if (!results[i].IsViolation()) continue;
     ++tally.violations;
-    Keep(epsilon, questions.rays[i], questions.classical[i], answers.radiance[i], answers.rounded,
-         errors[i]);
+    Keep(epsilon, questions.rays[i], questions.classical[i], answers.radiance[i],
+         answers.from_frame, errors[i]);
   }
   audit_.by_epsilon[epsilon] += tally;
   audit_.by_kind[static_cast<size_t>(kind)] += tally;
@@ -191,12 +206,12 @@ std::vector<double> Auditor::Judge(QueryKind kind, size_t epsilon, const Questio
 }
 
 void Auditor::Keep(size_t epsilon, const Ray& ray, const Rgb& classical, const Rgb& answer,
-                   bool rounded, double error_over_allowed) {
+                   bool from_frame, double error_over_allowed) {
   if (audit_.violations.size() >= request_.max_violations) return;
   audit_.violations.push_back({.scene = request_.name,
                                .ray = ray,
                                .options = OptionsOf(epsilon),
-                               .from_frame = rounded,
+                               .from_frame = from_frame,
                                .answer = answer,
                                .classical = classical,
                                .error_over_allowed = error_over_allowed});
@@ -212,7 +227,7 @@ absl::Status Auditor::AskFrame(const Camera& camera, size_t epsilon, const Quest
   const auto frame = answerer_.RenderFrame(host_, request, pool_);
   if (!frame.ok()) return frame.status();
   Answers answers;
-  answers.rounded = true;
+  answers.from_frame = true;
   answers.lane_rounding = frame->lane_rounding;
   answers.stats = frame->stats;
   answers.source = frame->source;
@@ -254,17 +269,26 @@ absl::Status Auditor::AskRays(QueryKind kind, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     rays.push_back(kind == QueryKind::kLattice ? rays_.Lattice(random_) : rays_.Random(random_));
   }
-  const Questions questions = Trace(std::move(rays), /*eye_rays=*/false);
+  const auto half = rays.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  const Questions by_packets = Trace({rays.begin(), half}, /*eye_rays=*/false);
+  const Questions one_by_one = Trace({half, rays.end()}, /*eye_rays=*/false);
   for (size_t epsilon = 0; epsilon < request_.epsilons.size(); ++epsilon) {
-    const auto answers = Ask(questions, epsilon);
-    if (!answers.ok()) return answers.status();
-    const std::vector<double> errors = Judge(kind, epsilon, questions, *answers);
-    for (size_t i = 0; i < count; ++i) {
-      // Without any error every ray is as good: some are kept.
-      if (errors[i] > 0 || i % 8 == 0) {
-        const double step = random_.LogUniform(kShortestStep, kLongestStep);
-        starts_[epsilon].push_back({errors[i], questions.rays[i], step});
-      }
+    if (auto s = AskRays(kind, epsilon, by_packets, Lanes::kSimd); !s.ok()) return s;
+    if (auto s = AskRays(kind, epsilon, one_by_one, Lanes::kScalar); !s.ok()) return s;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Auditor::AskRays(QueryKind kind, size_t epsilon, const Questions& questions,
+                              Lanes lanes) {
+  const auto answers = Ask(questions, epsilon, lanes);
+  if (!answers.ok()) return answers.status();
+  const std::vector<double> errors = Judge(kind, epsilon, questions, *answers);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    // Without any error every ray is as good: some are kept.
+    if (errors[i] > 0 || i % 8 == 0) {
+      const double step = random_.LogUniform(kShortestStep, kLongestStep);
+      starts_[epsilon].push_back({errors[i], questions.rays[i], step});
     }
   }
   return absl::OkStatus();
@@ -303,7 +327,7 @@ absl::Status Auditor::Climb(size_t epsilon, size_t count) {
       rays.push_back(rays_.Near(climber.ray, climber.step, random_));
     }
     const Questions questions = Trace(std::move(rays), /*eye_rays=*/false);
-    const auto answers = Ask(questions, epsilon);
+    const auto answers = Ask(questions, epsilon, Lanes::kScalar);
     if (!answers.ok()) return answers.status();
     const std::vector<double> errors = Judge(QueryKind::kClimb, epsilon, questions, *answers);
     for (size_t i = 0; i < count; ++i) Move(climbers[i], questions.rays[i], errors[i]);

@@ -73,9 +73,10 @@ void LiveAudit::OfferSamples(Request request, size_t answers, const SampleAt& sa
 
 void LiveAudit::Offer(const LiveScene& scene, const std::vector<Ray>& rays,
                       const RenderOptions& options, const RayBatch& batch) {
-  OfferSamples({scene, options, /*from_frame=*/false}, batch.answers.size(), [&](size_t i) {
-    return Sample{nullptr, rays[i], batch.answers[i].radiance};
-  });
+  OfferSamples({scene, options, /*from_frame=*/false, batch.lane_rounding}, batch.answers.size(),
+               [&](size_t i) {
+                 return Sample{nullptr, rays[i], batch.answers[i].radiance};
+               });
 }
 
 void LiveAudit::Offer(const LiveScene& scene, const RenderOptions& options, const Frame& frame) {
@@ -111,9 +112,10 @@ void LiveAudit::Check(const Sample& sample) {
   const Rgb classical = request.scene.host->tracer().Radiance(ray.origin, ray.direction,
                                                               request.options.limits, none);
   const double epsilon = request.options.max_relative_error, floor = RadianceFloor(scene);
-  const Comparison result = request.from_frame ? CompareRounded(sample.answer, classical, epsilon,
-                                                                floor, request.lane_rounding)
-                                               : Compare(sample.answer, classical, epsilon, floor);
+  const bool rounded = request.from_frame || request.lane_rounding > 0;
+  const Comparison result =
+      rounded ? CompareRounded(sample.answer, classical, epsilon, floor, request.lane_rounding)
+              : Compare(sample.answer, classical, epsilon, floor);
   AuditCounts& counts = *request.scene.counts;
   if (result.error_over_allowed > counts.max_error_over_allowed_.load(std::memory_order_relaxed)) {
     counts.max_error_over_allowed_.store(result.error_over_allowed, std::memory_order_relaxed);

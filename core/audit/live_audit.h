@@ -82,7 +82,7 @@ class LiveAudit {
     LiveScene scene;
     RenderOptions options;
     bool from_frame = false;
-    double lane_rounding = 0;  // Frame::lane_rounding
+    double lane_rounding = 0;  // of the Frame or RayBatch
   };
   struct Sample {
     std::shared_ptr<const Request> request;

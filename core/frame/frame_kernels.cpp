@@ -32,6 +32,7 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "core/frame/lights-inl.h"
 #include "core/packet/block-inl.h"
+#include "core/packet/rays-inl.h"
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -40,12 +41,20 @@ namespace linetree::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 void RenderFrameBlock(const PacketScene&, const BlockTask&, const SurfaceCache::Reader&, FramePlan&,
                       bool, PacketWorkspace&, PacketCounts&) {}
+void TraceCachedRays(const PacketScene&, const RayTask&, uint64_t, const SurfaceCache::Reader&,
+                     FramePlan&, bool, PacketWorkspace&, PacketCounts&) {}
 #else
 void RenderFrameBlock(const PacketScene& scene, const BlockTask& task,
                       const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
                       PacketWorkspace& workspace, PacketCounts& counts) {
-  CachedLights lights(scene, reader, plan, booking, workspace, counts);
+  CachedLights lights(scene, reader, plan, booking, true, workspace, counts);
   BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render();
+}
+void TraceCachedRays(const PacketScene& scene, const RayTask& task, uint64_t packets,
+                     const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
+                     PacketWorkspace& workspace, PacketCounts& counts) {
+  CachedLights lights(scene, reader, plan, booking, false, workspace, counts);
+  TraceRays(scene, task, packets, lights, workspace, counts);
 }
 #endif
 
@@ -56,12 +65,19 @@ HWY_AFTER_NAMESPACE();
 namespace linetree {
 
 HWY_EXPORT(RenderFrameBlock);
+HWY_EXPORT(TraceCachedRays);
 
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
                           PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
   (scene, task, lights, plan, booking, workspace, counts);
+}
+void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
+                         const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                         PacketWorkspace& workspace, PacketCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(TraceCachedRays)
+  (scene, task, packets, lights, plan, booking, workspace, counts);
 }
 
 }  // namespace linetree

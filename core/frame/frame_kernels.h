@@ -12,4 +12,9 @@ void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
                           PacketWorkspace& workspace, PacketCounts& counts);
 
+// Of the packets of a block of rays, those whose bit is set in `packets`.
+void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
+                         const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                         PacketWorkspace& workspace, PacketCounts& counts);
+
 }  // namespace linetree

@@ -17,19 +17,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
-// Lights of a Follower. `booking`: the work is counted for the plan, beside what it would be
-// without the trees.
+// Lights of a Follower. `has_tiles`: its first packets are tiles of an image. `booking`: the work
+// is counted for the plan, beside what it would be without the trees.
 class CachedLights {
  public:
   static constexpr bool kHasSheets = true;
 
   HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
-                          FramePlan& plan, bool booking, PacketWorkspace& workspace,
+                          FramePlan& plan, bool booking, bool has_tiles, PacketWorkspace& workspace,
                           PacketCounts& counts)
       : scene_(scene),
         reader_(reader),
         plan_(plan),
         booking_(booking),
+        has_tiles_(has_tiles),
         workspace_(workspace),
         last_blockers_(workspace.LastBlockers(scene.lights().size())),
         counts_(counts),
@@ -321,7 +322,7 @@ class CachedLights {
                              LaneMask lanes) const {
     const auto material = static_cast<size_t>(scene_.material_of()[static_cast<size_t>(object)]);
     const PacketMaterials& table = scene_.materials();
-    return packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
+    return has_tiles_ && packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
            table.spawns[material] == 0 && table.shines[material] == 0 &&
            scene_.IsFlat(object, face);
   }
@@ -368,6 +369,7 @@ class CachedLights {
   const SurfaceCache::Reader& reader_;
   FramePlan& plan_;
   const bool booking_;
+  const bool has_tiles_;
   PacketWorkspace& workspace_;
   int32_t* const last_blockers_;
   PacketCounts& counts_;

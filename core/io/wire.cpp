@@ -180,6 +180,7 @@ v1::TraceRaysReply RayBatchToWire(const RayBatch& batch, const SceneVersion& ver
   v1::TraceRaysReply reply;
   reply.set_scene_version(version);
   *reply.mutable_stats() = FrameStatsToWire(batch.stats, 0, 0);
+  reply.set_lane_rounding(batch.lane_rounding);
   reply.mutable_answers()->Reserve(static_cast<int>(batch.answers.size()));
   for (const RayAnswer& answer : batch.answers) {
     v1::RayAnswer* a = reply.add_answers();
@@ -197,6 +198,7 @@ v1::TraceRaysReply RayBatchToWire(const RayBatch& batch, const SceneVersion& ver
 absl::StatusOr<RayBatch> RayBatchFromWire(const v1::TraceRaysReply& message) {
   RayBatch batch;
   batch.stats = FrameStatsFromWire(message.stats());
+  batch.lane_rounding = message.lane_rounding();
   batch.answers.reserve(static_cast<size_t>(message.answers_size()));
   for (const v1::RayAnswer& a : message.answers()) {
     if (!v1::Source_IsValid(a.source()) || !v1::Verdict_IsValid(a.verdict())) {

@@ -256,7 +256,7 @@ class BlockRenderer {
       if (own && RenderSheet(*own, column, row, place, first)) return;
       CompleteHits(scene_, packet_.rays, search, follower_.hits(), counts_);
     }
-    follower_.FollowHits(packet_, 1);
+    follower_.Shade(packet_, 1);
     float* sums = workspace_.radiance() + first;
     for (int c = 0; c < 3; ++c) follower_.sum()[c].Store(sums + c * kBlockPixels);
     StoreFirstHits(follower_.hits(), place, task_.stride, task_.target);

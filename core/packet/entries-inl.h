@@ -6,7 +6,7 @@
 #define LINETREE_CORE_PACKET_ENTRIES_INL_H_
 #endif
 
-#include "core/packet/block-inl.h"
+#include "core/packet/rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
@@ -24,6 +24,27 @@ void RenderBlock(const PacketScene& scene, const BlockTask& task, PacketWorkspac
                  PacketCounts& counts) {
   SearchedLights lights(scene, task.target.topology != nullptr, workspace, counts);
   BlockRenderer<SearchedLights>(scene, task, lights, workspace, counts).Render();
+}
+
+void FindRayHits(const PacketScene& scene, std::span<const Ray> rays,
+                 std::span<const uint32_t> block, std::span<Hit> hits, PacketCounts& counts) {
+  PacketRays packet;
+  PacketHits found;
+  counts.rays.eye += block.size();
+  for (size_t first = 0; first < block.size(); first += kPacketLanes) {
+    const auto lanes = block.subspan(first, std::min<size_t>(kPacketLanes, block.size() - first));
+    SetRays(rays, lanes, packet);
+    FindHitsOf(scene, packet, found, counts);
+    for (size_t lane = 0; lane < lanes.size(); ++lane) {
+      hits[lanes[lane]] = found.At(static_cast<int>(lane));
+    }
+  }
+}
+
+void TraceRayBlock(const PacketScene& scene, const RayTask& task, PacketWorkspace& workspace,
+                   PacketCounts& counts) {
+  SearchedLights lights(scene, false, workspace, counts);
+  TraceRays(scene, task, ~uint64_t{0}, lights, workspace, counts);
 }
 
 void Radiance(const PacketScene& scene, const PacketRays& rays, const PathLimits& limits,

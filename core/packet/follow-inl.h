@@ -108,10 +108,11 @@ class Follower {
   // sum().
   void Follow(const PathPacket& packet, int depth) {
     FindHitsOf(scene_, packet.rays, hits_, counts_);
-    FollowHits(packet, depth);
+    Shade(packet, depth);
   }
-  // The same, when hits() are set.
-  void FollowHits(const PathPacket& packet, int depth) {
+
+  // The same where hits() are those of the packet already.
+  void Shade(const PathPacket& packet, int depth) {
     const LaneMask active = packet.rays.active, missed = active & ~hits_.hit;
     total_ = asked_ = 0;
     if (hits_.hit != 0) {

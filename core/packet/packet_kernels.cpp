@@ -43,6 +43,9 @@ void Shade(const PacketScene&, const PacketRays&, const PacketHits&, std::span<c
 void Radiance(const PacketScene&, const PacketRays&, const PathLimits&, PacketWorkspace&,
               PacketRgb&, PacketCounts&) {}
 void RenderBlock(const PacketScene&, const BlockTask&, PacketWorkspace&, PacketCounts&) {}
+void FindRayHits(const PacketScene&, std::span<const Ray>, std::span<const uint32_t>,
+                 std::span<Hit>, PacketCounts&) {}
+void TraceRayBlock(const PacketScene&, const RayTask&, PacketWorkspace&, PacketCounts&) {}
 
 }  // namespace linetree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -58,6 +61,8 @@ HWY_EXPORT(CastShadows);
 HWY_EXPORT(Shade);
 HWY_EXPORT(Radiance);
 HWY_EXPORT(RenderBlock);
+HWY_EXPORT(FindRayHits);
+HWY_EXPORT(TraceRayBlock);
 
 bool HaveWideKernels() { return HWY_DYNAMIC_DISPATCH(IsWideTarget)(); }
 void EyePacketWide(const EyeRays& eye_rays, int column, int row, PacketRays& rays) {
@@ -82,6 +87,14 @@ void RadianceWide(const PacketScene& scene, const PacketRays& rays, const PathLi
 void RenderBlockWide(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                      PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderBlock)(scene, task, workspace, counts);
+}
+void FindRayHitsWide(const PacketScene& scene, std::span<const Ray> rays,
+                     std::span<const uint32_t> block, std::span<Hit> hits, PacketCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(FindRayHits)(scene, rays, block, hits, counts);
+}
+void TraceRayBlockWide(const PacketScene& scene, const RayTask& task, PacketWorkspace& workspace,
+                       PacketCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(TraceRayBlock)(scene, task, workspace, counts);
 }
 
 }  // namespace linetree

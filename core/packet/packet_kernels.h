@@ -35,4 +35,26 @@ struct BlockTask {
 void RenderBlockWide(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                      PacketCounts& counts);
 
+// What a ray carries, and what it hits.
+struct RayResult {
+  double depth = 0;  // distance along the ray, where something is hit
+  float radiance[3] = {};
+  int32_t object = kNoObject;
+  uint8_t uses = 0;  // PixelUse
+};
+
+// At most kBlockPixels rays of a batch, sixteen to a packet in the order of `block`.
+struct RayTask {
+  std::span<const Ray> rays;        // the batch; of unit direction
+  std::span<const Hit> hits;        // of all rays, if they are known; empty if not
+  std::span<const uint32_t> block;  // indices into the batch; where hits are known, all have one
+  std::span<RayResult> results;     // one for every entry of the block
+  const PathLimits& limits;
+};
+void TraceRayBlockWide(const PacketScene& scene, const RayTask& task, PacketWorkspace& workspace,
+                       PacketCounts& counts);
+// What these rays of a batch hit, no more; hits[i] is that of rays[i].
+void FindRayHitsWide(const PacketScene& scene, std::span<const Ray> rays,
+                     std::span<const uint32_t> block, std::span<Hit> hits, PacketCounts& counts);
+
 }  // namespace linetree

@@ -45,8 +45,9 @@ struct PixelTarget {
 
 class PacketTracer {
  public:
-  // Keeps a reference to the tracer, which must outlive it. `sees_squares`: whether squares of pixels
-  // are looked at as a whole before their eye rays are searched for; no result depends on it.
+  // Keeps a reference to the tracer, which must outlive it. `sees_squares`: whether squares of
+  // pixels are looked at as a whole before their eye rays are searched for; no result depends on
+  // it.
   explicit PacketTracer(const Tracer& tracer, bool sees_squares = true);
   ~PacketTracer();
 

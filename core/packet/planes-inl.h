@@ -117,7 +117,8 @@ HWY_INLINE bool MeetPolyhedron(const PacketShape& shape, const FloatPlane* plane
     const Floats t = -(DistanceOf(planes[i], rays.o) * inverse);
     const Floats error = margin * Abs(inverse);
     const Floats low = t - error, high = t + error;
-    const Mask enters = slope < Floats::All(0);
+    // By the sign bit: a slope of -0 goes with an inverse below zero.
+    const Mask enters = inverse < Floats::All(0);
     const Floats in_low = Select(enters, low, -far), in_high = Select(enters, high, -far);
     const Floats out_low = Select(enters, far, low), out_high = Select(enters, far, high);
     if constexpr (kFaces) {

@@ -284,6 +284,8 @@ void Batch::TraceRest() {
   });
 }
 
+}  // namespace
+
 void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
   stats.pixels += answers.size();
   for (const RayAnswer& answer : answers) {
@@ -309,8 +311,6 @@ void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats) {
     }
   }
 }
-
-}  // namespace
 
 absl::Status AnswerRays(const Tracer& tracer, RadianceCache& cache, CertifiedTrees trees,
                         const RenderOptions& options, std::span<const Ray> rays, WorkerPool& pool,

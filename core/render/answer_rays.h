@@ -1,5 +1,5 @@
-// Radiance along a set of rays, from the cache where it may answer and traced where not. The one
-// path behind frames, flights and ray batches.
+// Radiance along a set of rays, from the cache where it may answer and traced where not, ray by
+// ray: the path behind frames, flights and ray batches that do not go by packets.
 //
 // For every ray the nearest hit is searched. Then, in rounds, rays look their cells up; cells that
 // enough rays of the batch ask for and that have not been tried are built; rays whose cell was
@@ -61,6 +61,9 @@ struct CertifiedTrees {
 
   uint64_t ByteSize() const { return surfaces.ByteSize() + paths.ByteSize(); }
 };
+
+// Adds the answers' sources and verdicts to stats.
+void CountAnswers(std::span<const RayAnswer> answers, FrameStats& stats);
 
 // Answers rays[i] in answers[i]; directions are of unit length. Adds to stats. CANCELLED when
 // `cancel` said so (what was built stays).

@@ -12,11 +12,19 @@ enum class JudgeKind {
   kCertified,  // surface trees and certified linetrees: epsilon is proved
 };
 
-// How whole frames are traced; batches of rays always go one by one.
+// How rays are traced.
 enum class Lanes {
   kScalar,  // one by one, in double, with linetrees where rays branch
   kSimd,    // sixteen rays at a time, radiance summed in float: off by PacketRadianceRounding more;
             // with surface trees where a planner finds that they pay (frame_plan.h)
+};
+
+// Which rays of a batch share packets (ray_blocks.h). No answer depends on it; it is not part of a
+// request over the wire.
+enum class RayOrder {
+  kAuto,     // as they come if they keep together, binned if not
+  kAsGiven,  // as they come
+  kBinned,   // neighbours are searched for hits together, hits on one face shaded together
 };
 
 struct RenderOptions {
@@ -26,6 +34,7 @@ struct RenderOptions {
   double max_relative_error = 0.1;
   PathLimits limits;
   Lanes lanes = Lanes::kScalar;
+  RayOrder ray_order = RayOrder::kAuto;
 };
 
 // Largest picture and batch that are accepted.

@@ -1,11 +1,13 @@
 #include "core/render/scene_host.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/render/frame_blocks.h"
+#include "core/render/ray_blocks.h"
 
 namespace linetree {
 namespace {
@@ -76,20 +78,49 @@ CacheOptions RadianceShare(CacheOptions options) {
 
 }  // namespace
 
+namespace {
+
+// Of a vector that is finite and not zero.
+Vec3d UnitDirection(const Vec3d& d) {
+  // Scaled first: the square of a long vector would overflow, that of a short one vanish.
+  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  return Normalized(Vec3d{d.x / largest, d.y / largest, d.z / largest});
+}
+
+// UnitRay of all; the error of the first bad one.
+absl::Status MakeUnitRays(const std::vector<Ray>& rays, WorkerPool& pool, std::vector<Ray>& unit,
+                          double* cpu_ms) {
+  constexpr size_t kChunk = 4096;
+  unit.resize(rays.size());
+  std::atomic<bool> all_good{true};
+  const auto make_chunk = [&](size_t chunk) {
+    const size_t end = std::min(rays.size(), (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) {
+      const auto& [origin, direction] = rays[i];
+      if (!IsFinite(origin) || !IsFinite(direction) || direction == Vec3d{}) all_good = false;
+      unit[i] = {origin, UnitDirection(direction)};
+    }
+  };
+  pool.ParallelFor((rays.size() + kChunk - 1) / kChunk, make_chunk, cpu_ms);
+  if (all_good) return absl::OkStatus();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (const auto ray = UnitRay(rays[i], i); !ray.ok()) return ray.status();
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
 absl::StatusOr<Ray> UnitRay(const Ray& ray, size_t index) {
   if (!IsFinite(ray.origin)) {
     return absl::InvalidArgumentError(
         absl::StrCat("rays[", index, "].origin: expected finite coordinates"));
   }
-  // Scaled first: the square of a long vector would overflow, that of a short one vanish.
-  const Vec3d& d = ray.direction;
-  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  if (!IsFinite(d) || !(largest > 0)) {
+  if (!IsFinite(ray.direction) || ray.direction == Vec3d{}) {
     return absl::InvalidArgumentError(
         absl::StrCat("rays[", index, "].direction: expected a finite vector other than zero"));
   }
-  const Vec3d scaled{d.x / largest, d.y / largest, d.z / largest};
-  return Ray{ray.origin, Normalized(scaled)};
+  return Ray{ray.origin, UnitDirection(ray.direction)};
 }
 
 SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cache_options,
@@ -186,20 +217,21 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
         absl::StrCat("rays: at most ", limits_.max_rays, " are allowed, got ", rays.size()));
   }
   const Stopwatch stopwatch;
-  std::vector<Ray> unit_rays;
-  unit_rays.reserve(rays.size());
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const auto ray = UnitRay(rays[i], i);
-    if (!ray.ok()) return ray.status();
-    unit_rays.push_back(*ray);
-  }
   RayBatch batch;
+  std::vector<Ray> unit_rays;
+  if (auto s = MakeUnitRays(rays, pool, unit_rays, &batch.stats.cpu_ms); !s.ok()) return s;
   batch.answers.resize(rays.size());
-  if (auto s = AnswerRays(tracer_, cache_, {surfaces_, paths_}, options, unit_rays, pool, cancel,
-                          nullptr, batch.answers, batch.stats);
-      !s.ok()) {
-    return s;
+  absl::Status status;
+  if (GoesByPackets(options)) {
+    batch.lane_rounding = packets().radiance_rounding();
+    status = AnswerRayBlocks(packets(), surfaces_, plan_, options, unit_rays, pool, cancel,
+                             batch.answers, batch.stats);
+    batch.stats.cache_bytes = CacheBytes();
+  } else {
+    status = AnswerRays(tracer_, cache_, {surfaces_, paths_}, options, unit_rays, pool, cancel,
+                        nullptr, batch.answers, batch.stats);
   }
+  if (!status.ok()) return status;
   batch.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   ++totals_.ray_batches;

@@ -32,6 +32,8 @@ struct FrameRequest {
 
 struct RayBatch {
   std::vector<RayAnswer> answers;
+  // What arithmetic in float may add to max_relative_error; 0 for answers in double.
+  double lane_rounding = 0;
   FrameStats stats;
 };
 

@@ -107,6 +107,28 @@ TEST(LiveAuditTest, FramesAreComparedAsFloats) {
   EXPECT_TRUE(log.violations()[0].from_frame);
 }
 
+TEST(LiveAuditTest, RaysByPacketsMayBeOffByWhatFloatAdds) {
+  Served served(1);
+  served.rays = Served(500).rays;
+  served.options.lanes = Lanes::kSimd;
+  served.options.max_relative_error = 0;
+  WorkerPool pool(1);
+  served.batch = *served.host->TraceRays(served.rays, served.options, pool);
+  ASSERT_GT(served.batch.lane_rounding, 0);
+  Log log;
+  LiveAudit audit({.share = 1}, log.Writer());
+  audit.Offer(served.scene, served.rays, served.options, served.batch);
+  audit.WaitUntilChecked();
+  EXPECT_EQ(served.scene.counts->values().checked, 500u);
+  EXPECT_EQ(served.scene.counts->values().violations, 0u);
+  EXPECT_GT(served.scene.counts->values().max_error_over_allowed, 0);
+  Rgb& radiance = served.batch.answers[77].radiance;
+  radiance.g += 2 * served.batch.lane_rounding * std::max(radiance.g, 1.0);
+  audit.Offer(served.scene, served.rays, served.options, served.batch);
+  audit.WaitUntilChecked();
+  EXPECT_EQ(served.scene.counts->values().violations, 1u);
+}
+
 TEST(LiveAuditTest, OnlyCachedAnswersAndOnlyAShareOfThem) {
   Served served(5000);
   Log log;

@@ -173,6 +173,7 @@ TEST_F(FrameRequestTest, ErrorsNameTheFieldByItsWholePath) {
 TEST(WireTest, BatchesLoseNothing) {
   RayBatch batch;
   batch.stats = CountedStats();
+  batch.lane_rounding = 0.25;
   batch.answers = {{{1, 2, 3}, Source::kTraced, Verdict::kGap, 5, 6.5},
                    {{0, 0.5, 0},
                     Source::kBackground,
@@ -184,6 +185,7 @@ TEST(WireTest, BatchesLoseNothing) {
   const auto back = RayBatchFromWire(reply);
   ASSERT_TRUE(back.ok()) << back.status();
   ExpectSame(back->stats, batch.stats);
+  EXPECT_EQ(back->lane_rounding, 0.25);
   ASSERT_EQ(back->answers.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(back->answers[i].radiance, batch.answers[i].radiance);

@@ -44,6 +44,40 @@ TEST(PacketTracer, EveryShapeAlone) {
   }
 }
 
+// Along one axis or within one of the planes of the axes, where a component is 0 with either sign.
+std::vector<Ray> Parallel(Random& random, int count) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    Vec3d direction = random.Direction();
+    const int axis = random.Below(3);
+    direction[axis] = random.Below(2) == 0 ? 0.0 : -0.0;
+    if (random.Below(3) == 0) direction[(axis + 1) % 3] = -0.0;
+    const Vec3d unit = Normalized(direction);
+    rays.push_back({random.InCube(0.9) - unit * 3, unit});
+  }
+  return rays;
+}
+
+TEST(PacketTracer, RaysParallelToFaces) {
+  for (const ShapeKind kind : kShapeKinds) {
+    CheckTotals totals;
+    for (int i = 0; i < 40; ++i) {
+      Random random(static_cast<uint64_t>(i));
+      Scene scene = RandomScene(random, 1, 1);
+      scene.objects.clear();
+      if (kind == ShapeKind::kPolyhedron) {
+        AddObject(scene, RandomPolyhedron(random, AffineMap()), 0);
+      } else {
+        AddObject(scene, RandomShape(kind, random, random.Uniform(0.3, 1), {0, 0, 0}), 0);
+      }
+      const Tracer tracer(scene);
+      const PacketTracer packets(tracer);
+      CheckPackets(packets, Free(Parallel(random, 320)), {}, "shape", totals);
+    }
+    EXPECT_EQ(totals.wrong, 0u) << static_cast<int>(kind);
+  }
+}
+
 TEST(PacketTracer, RandomScenes) {
   CheckTotals totals;
   for (int i = 0; i < 40; ++i) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -70,6 +71,31 @@ TEST(RaysCommand, JsonHasAnswersAndCounters) {
   EXPECT_EQ(json["rays"][1]["source"], "background");
   EXPECT_EQ(json["stats"]["pixels"], 2);
   EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir.File("s.json"))), json["stats"]);
+}
+
+TEST(RaysCommand, RaysGoByPacketsToo) {
+  TempDir dir;
+  std::ostringstream rays;
+  for (int i = 0; i < 40; ++i) rays << 0.1 * i - 2 << " 5 0 0.1 -2 0.02\n";
+  nlohmann::json runs[2];
+  for (const char* lanes : {"scalar", "simd"}) {
+    const Finished run = RunLinetree(
+        Rays({"--input", "-", "--json", "--mode", "classical", "--lanes", lanes}), rays.str());
+    ASSERT_EQ(run.exit_status, 0) << run.err;
+    runs[lanes == std::string("simd")] = nlohmann::json::parse(run.out);
+  }
+  const double rounding = runs[1]["stats"]["lane_rounding"];
+  EXPECT_EQ(runs[0]["stats"]["lane_rounding"], 0.0);
+  EXPECT_GT(rounding, 0);
+  for (size_t i = 0; i < 40; ++i) {
+    const nlohmann::json &scalar = runs[0]["rays"][i], &simd = runs[1]["rays"][i];
+    EXPECT_EQ(simd["object"], scalar["object"]);
+    EXPECT_EQ(simd["depth"], scalar["depth"]);
+    for (size_t c = 0; c < 3; ++c) {
+      const double truth = scalar["radiance"][c];
+      EXPECT_NEAR(simd["radiance"][c], truth, rounding * std::max(truth, 1.0 / 1024));
+    }
+  }
 }
 
 TEST(RaysCommand, BadLinesAreNumbered) {

@@ -1,0 +1,38 @@
+// How surface trees grow while packets are answered: only where a planner, which counts work, finds
+// that it pays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/cache/parallel_loop.h"
+#include "core/cache/surface_cache.h"
+#include "core/frame/frame_plan.h"
+#include "core/scene/scene.h"
+
+namespace linetree {
+
+// What is learnt for the requests to come is to be worth its price within so many like this one;
+// what is built for the rest of one, eight times its price within that one: savings are promised
+// before they are known.
+inline constexpr double kLearningHorizon = 6;
+inline constexpr double kSureHorizon = 1.0 / 8;
+
+// Packets of a block: one in so many is booked in the plan.
+inline constexpr size_t kBlockPackets = 64;
+
+// What has just been asked for, and what it may cost.
+struct Growth {
+  double weight;      // shading points that one use stands for
+  double horizon;     // a cell is worth its price within so many requests like this one
+  size_t most_cells;  // those that most points ask for
+};
+
+// Certifies the cells that pay for themselves, and returns how many.
+uint64_t GrowTrees(const Scene& scene, SurfaceCache& surfaces, FramePlan& plan,
+                   const Growth& growth, const ParallelLoop& loop);
+
+// Cells that may be learnt for the requests to come, after one of so many rays.
+size_t CellsToLearn(const Scene& scene, size_t rays);
+
+}  // namespace linetree
