@@ -120,7 +120,9 @@ PacketTracer::PacketTracer(const Tracer& tracer)
       radiance_rounding_(PacketRadianceRounding(LargestExponent(tracer.scene()))) {}
 PacketTracer::~PacketTracer() = default;
 
-size_t PacketTracer::ByteSize() const { return sizeof(PacketScene) + scene_->ByteSize(); }
+size_t PacketTracer::ByteSize() const {
+  return sizeof(PacketTracer) + sizeof(PacketScene) + scene_->ByteSize();
+}
 bool PacketTracer::IsWide() const { return scene_->usable() && HaveWideKernels(); }
 
 void PacketTracer::EyePacket(const EyeRays& eye_rays, int column, int row, PacketRays& rays) const {
