@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/audit/thread_speed.h"
 #include "core/math/check.h"
 
 namespace linetree {
@@ -55,23 +56,23 @@ std::vector<SpeedPath> PathsOf(const std::vector<SpeedTarget>& targets) {
 }
 
 TargetResult ResultOf(const SpeedTarget& target, const std::vector<PathSpeed>& speeds,
-                      const std::vector<PathSpeed>& by_two) {
-  const auto of_path = [&](const std::vector<PathSpeed>& all) -> const PathSpeed& {
-    const auto found = std::find_if(
-        all.begin(), all.end(), [&](const PathSpeed& speed) { return speed.path == target.path; });
-    LT_CHECK(found != all.end());
-    return *found;
-  };
-  const PathSpeed& speed = of_path(speeds);
-  TargetResult result{target, speed.median_ratio, speed.flight.beyond, speed.flight.largest_error};
-  if (target.what == What::kLeast) result.measured = speed.least_ratio;
+                      const ThreadSpeed& threads) {
+  const auto speed = std::find_if(speeds.begin(), speeds.end(),
+                                  [&](const PathSpeed& s) { return s.path == target.path; });
+  LT_CHECK(speed != speeds.end());
+  TargetResult result{target, speed->median_ratio, speed->flight.beyond,
+                      speed->flight.largest_error};
+  if (target.what == What::kLeast) result.measured = speed->least_ratio;
   if (target.what == What::kThreads) {
-    const PathSpeed& second = of_path(by_two);
-    result.measured = speed.cached.median / second.cached.median;
-    result.beyond += second.flight.beyond;
-    result.largest_error = std::max(result.largest_error, second.flight.largest_error);
+    result.measured = threads.ratio;
+    result.beyond += threads.unequal;
   }
   return result;
+}
+
+bool WantsThreads(const std::vector<SpeedTarget>& targets) {
+  return std::any_of(targets.begin(), targets.end(),
+                     [](const SpeedTarget& target) { return target.what == What::kThreads; });
 }
 
 }  // namespace
@@ -134,21 +135,15 @@ absl::StatusOr<std::vector<TargetResult>> MeasureTargets(
   setting.options.limits.max_depth = first.max_depth;
   SpeedFlights wanted = flights;
   wanted.paths = PathsOf(targets);
-  const bool threads = std::any_of(targets.begin(), targets.end(),
-                                   [](auto& target) { return target.what == What::kThreads; });
-  const auto share = [&](double done) {
-    if (progress) progress(threads ? done / 2 : done);
-  };
-  auto speeds = StudyPaths(setting, wanted, share);
+  const auto speeds = StudyPaths(setting, wanted, progress);
   if (!speeds.ok()) return speeds.status();
-  std::vector<PathSpeed> by_two;
-  if (threads) {
-    setting.threads = 2;
-    auto second = StudyPaths(setting, wanted, [&](double done) { share(1 + done); });
-    if (!second.ok()) return second.status();
-    by_two = *std::move(second);
+  ThreadSpeed threads;
+  if (WantsThreads(targets)) {
+    const auto measured = StudyThreads(setting.scene, setting.options, flights.still_frames);
+    if (!measured.ok()) return measured.status();
+    threads = *measured;
   }
-  for (const SpeedTarget& target : targets) results.push_back(ResultOf(target, *speeds, by_two));
+  for (const SpeedTarget& target : targets) results.push_back(ResultOf(target, *speeds, threads));
   return results;
 }
 

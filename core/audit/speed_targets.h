@@ -14,7 +14,7 @@ struct SpeedTarget {
   enum class What {
     kMedian,   // ratio of the path's frames
     kLeast,    // of every single frame
-    kThreads,  // cached frame with one thread by the same with two
+    kThreads,  // cached frame with one thread by the same with two; both must be equal
     kSamples,  // several rays a pixel, which no frame can have yet: never measured
   };
   std::string scene;  // KIND:OBJECTS:LIGHTS, or a file of the scenes' folder
