@@ -104,18 +104,29 @@ std::string_view NameOf(SpeedTarget::What what) {
 
 using Value = std::function<double(const PathSpeed&)>;
 
+void AddPoint(std::vector<PlotSeries>& all, const std::string& name, double x, double y) {
+  auto series =
+      std::find_if(all.begin(), all.end(), [&](const PlotSeries& s) { return s.name == name; });
+  if (series == all.end()) series = all.insert(all.end(), {name, {}});
+  series->points.emplace_back(x, y);
+}
+
 // A line for every scene and path.
-std::vector<PlotSeries> SeriesOf(const std::vector<SpeedRow>& rows, const std::string& suffix,
-                                 const Value& value) {
+std::vector<PlotSeries> SeriesOf(const std::vector<SpeedRow>& rows, const Value& value) {
   std::vector<PlotSeries> all;
   for (const SpeedRow& row : rows) {
     for (const PathSpeed& path : row.paths) {
-      const std::string name = absl::StrCat(row.setting.name, " ", NameOf(path.path), suffix);
-      auto series =
-          std::find_if(all.begin(), all.end(), [&](const PlotSeries& s) { return s.name == name; });
-      if (series == all.end()) series = all.insert(all.end(), {name, {}});
-      series->points.emplace_back(row.point, value(path));
+      AddPoint(all, absl::StrCat(row.setting.name, " ", NameOf(path.path)), row.point, value(path));
     }
+  }
+  return all;
+}
+
+// One for every scene: its paths' classical frames differ little.
+std::vector<PlotSeries> ClassicalSeries(const std::vector<SpeedRow>& rows) {
+  std::vector<PlotSeries> all;
+  for (const SpeedRow& row : rows) {
+    AddPoint(all, row.setting.name + " classical", row.point, row.paths.front().classical.median);
   }
   return all;
 }
@@ -290,24 +301,21 @@ std::vector<Plot> SweepPlots(Sweep sweep, const std::vector<SpeedRow>& rows) {
   const std::string name(linetree::NameOf(sweep));
   PlotAxis x{.label = name};
   x.logarithmic = sweep != Sweep::kEpsilon && sweep != Sweep::kDepth && sweep != Sweep::kThreads;
-  std::vector<PlotSeries> times = SeriesOf(rows, "", [](auto& p) { return p.cached.median; });
-  for (PlotSeries& series :
-       SeriesOf(rows, ", classical", [](auto& p) { return p.classical.median; })) {
-    times.push_back(std::move(series));
-  }
+  std::vector<PlotSeries> times = SeriesOf(rows, [](auto& p) { return p.cached.median; });
+  for (PlotSeries& series : ClassicalSeries(rows)) times.push_back(std::move(series));
   return {{"classical / cached over " + name,
            x,
            {.label = "ratio"},
-           SeriesOf(rows, "", [](auto& p) { return p.median_ratio; })},
+           SeriesOf(rows, [](auto& p) { return p.median_ratio; })},
           {"least of single frames over " + name,
            x,
            {.label = "ratio"},
-           SeriesOf(rows, "", [](auto& p) { return p.least_ratio; })},
+           SeriesOf(rows, [](auto& p) { return p.least_ratio; })},
           {"time over " + name, x, {.label = "ns per pixel", .logarithmic = true}, times},
           {"largest error over " + name,
            x,
            {.label = "relative error", .logarithmic = true},
-           SeriesOf(rows, "", [](auto& p) { return p.flight.largest_error; })}};
+           SeriesOf(rows, [](auto& p) { return p.flight.largest_error; })}};
 }
 
 }  // namespace linetree

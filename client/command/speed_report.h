@@ -23,7 +23,8 @@ nlohmann::json SpeedJson(const SpeedRow& row);
 nlohmann::json TargetJson(const TargetResult& result);
 nlohmann::json MemoryJson(const std::vector<MemoryPart>& parts);
 
-// Over the points of a sweep, a line for every scene and path: ratio, time and error.
+// Over the points of a sweep, a line for every scene and path: ratio, time (also classical, of the
+// first path) and error.
 std::vector<Plot> SweepPlots(Sweep sweep, const std::vector<SpeedRow>& rows);
 
 }  // namespace linetree

@@ -108,7 +108,12 @@ absl::StatusOr<SpeedSetting> SettingAt(Sweep sweep, double point, const SpeedSou
       setting.threads = whole;
       break;
   }
-  if (made && (sweep == Sweep::kLights || sweep == Sweep::kObjects)) setting.scene = Make(*made);
+  if (made && (sweep == Sweep::kLights || sweep == Sweep::kObjects)) {
+    setting.scene = Make(*made);
+    const bool lights = sweep == Sweep::kLights;
+    setting.name = absl::StrCat(made->kind, ":", lights ? absl::StrCat(made->objects) : "N", ":",
+                                lights ? "N" : absl::StrCat(made->lights));
+  }
   return setting;
 }
 

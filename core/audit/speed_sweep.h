@@ -38,9 +38,9 @@ struct SpeedSource {
   std::optional<MadeScene> made;
 };
 
-// The setting at a valid point; what the sweep does not vary is `base`'s (but for scene and name).
-// Scenes from files get their lights as WithLights sets them. INVALID_ARGUMENT when the
-// sweep needs a made scene and the source is none.
+// The setting at a valid point, of one name for all points (room:18:N); what the sweep does not
+// vary is `base`'s (but for scene and name). Scenes from files get their lights as WithLights sets
+// them. INVALID_ARGUMENT when the sweep needs a made scene and the source is none.
 absl::StatusOr<SpeedSetting> SettingAt(Sweep sweep, double point, const SpeedSource& source,
                                        const SpeedSetting& base);
 

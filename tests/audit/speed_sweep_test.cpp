@@ -19,6 +19,8 @@ TEST(SpeedSweepTest, EachVariesItsOwnNumber) {
   EXPECT_EQ(At(Sweep::kLights, 7).scene->lights.size(), 7u);
   EXPECT_EQ(At(Sweep::kLights, 7, FileSource()).scene->lights.size(), 7u);
   EXPECT_EQ(At(Sweep::kObjects, 60).scene->objects.size(), 60u);
+  EXPECT_EQ(At(Sweep::kLights, 7).name, "room:18:N");
+  EXPECT_EQ(At(Sweep::kObjects, 60).name, "room:N:2");
   EXPECT_EQ(At(Sweep::kDepth, 8).options.limits.max_depth, 8);
   EXPECT_EQ(At(Sweep::kResolution, 300).options.width, 300);
   EXPECT_EQ(At(Sweep::kResolution, 300).options.height, 300);
