@@ -1,267 +1,270 @@
 // linetree bench speed: classical frames by packets against those of the scalar tracer, and cached
 // frames by packets against classical ones.
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "client/command/command.h"
+#include "client/command/explain_report.h"
 #include "client/command/flags.h"
 #include "client/command/output.h"
+#include "client/command/parse_values.h"
 #include "client/command/progress_bar.h"
-#include "client/command/table.h"
-#include "core/audit/frame_speed.h"
-#include "core/audit/speed_scenes.h"
-#include "core/audit/speed_study.h"
-#include "core/io/load_scene.h"
+#include "client/command/speed_report.h"
+#include "client/command/speed_run.h"
+#include "core/io/atomic_file.h"
+#include "core/io/camera_path.h"
 
 namespace linetree {
 namespace {
 
 struct BenchSpeedFlags {
-  std::vector<std::string> scenes;
-  std::string scenes_dir = "scenes";
+  SpeedPlan plan;
   SizeFlags size;
-  SpeedStudyOptions study;
-  std::vector<std::string> made;
-  double epsilon = 0.02;
-  int frames = 5;
-  int threads = 1;
+  std::vector<Sweep> sweeps;
+  std::vector<double> points;
+  std::string walk;
+  bool explain = false;
+  bool targets = false;
+  std::string target_part;
   std::string json;
+  std::string svg;
   bool quiet = false;
 };
 
-struct SpeedRow {
-  std::string scene;
-  SpeedStudy study;
-  FrameSpeed frames;
+template <class Rows>
+bool AllHold(const Rows& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.Holds(); });
+}
 
-  bool Holds() const {
-    return frames.beyond == 0 && study.different_topology == 0 && study.different_counts == 0 &&
-           study.largest_difference <= study.allowed_difference;
+std::string SettingText(const BenchSpeedFlags& flags) {
+  const FrameSpeedOptions& options = flags.plan.base.options;
+  return absl::StrCat(options.width, " x ", options.height, ", epsilon ", options.epsilon, ", ",
+                      flags.plan.base.threads, " thread(s), median of ", options.repeats);
+}
+
+void PrintMore(const BenchSpeedFlags& flags, const std::vector<SpeedRow>& rows) {
+  if (flags.plan.stages) {
+    std::cout << "\nns per pixel that frames take more with a stage than without it\n"
+              << StageTable(rows);
   }
-};
-
-// The scenes of the planned comparison.
-constexpr std::array<std::string_view, 13> kScenes = {
-    "room.textproto",  "face.textproto",  "glass.textproto",  "many_lights.textproto",
-    "spd/balls_2.nff", "spd/balls_4.nff", "spd/gears_1.nff",  "spd/mount_4.nff",
-    "spd/mount_6.nff", "spd/rings_1.nff", "spd/teapot_2.nff", "spd/tetra_6.nff",
-    "spd/tree_8.nff"};
-
-double Share(uint64_t part, uint64_t all) {
-  return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);
-}
-double HitsAgain(const PacketCounts& c) {
-  return Share(c.hits_again, c.rays.intersect - c.rays.shadow);
-}
-double ShadowsAgain(const PacketCounts& c) { return Share(c.shadows_again, c.rays.shadow); }
-
-std::string SpeedTable(const std::vector<SpeedRow>& rows) {
-  Table table({{"scene"},
-               {"objects", Align::kRight},
-               {"lights", Align::kRight},
-               {"scalar ns/px", Align::kRight},
-               {"packet ns/px", Align::kRight},
-               {"least..most", Align::kRight},
-               {"ratio", Align::kRight},
-               {"hits again", Align::kRight},
-               {"shadows again", Align::kRight},
-               {"other trees", Align::kRight},
-               {"largest difference", Align::kRight},
-               {"allowed", Align::kRight}});
+  if (!flags.explain) return;
   for (const SpeedRow& row : rows) {
-    const SpeedStudy& s = row.study;
-    table.AddRow(
-        {row.scene, Grouped(s.objects), Grouped(s.lights), absl::StrFormat("%.1f", s.scalar.median),
-         absl::StrFormat("%.1f", s.packet.median),
-         absl::StrFormat("%.1f..%.1f", s.packet.least, s.packet.most),
-         absl::StrFormat("%.1f", s.ratio), absl::StrFormat("%.3f %%", 100 * HitsAgain(s.counts)),
-         absl::StrFormat("%.3f %%", 100 * ShadowsAgain(s.counts)), Grouped(s.different_topology),
-         absl::StrFormat("%.1e", s.largest_difference),
-         absl::StrFormat("%.1e", s.allowed_difference)});
+    const FrameSpeed& flight = row.paths.back().flight;
+    std::cout << "\n"
+              << row.setting.name << "\n"
+              << ExplanationText(*row.setting.scene, flight.explanation);
   }
-  return table.ToString();
 }
 
-std::string FrameTable(const std::vector<SpeedRow>& rows) {
-  Table table({{"scene"},
-               {"objects", Align::kRight},
-               {"lights", Align::kRight},
-               {"classical ns/px", Align::kRight},
-               {"cold ns/px", Align::kRight},
-               {"ratio", Align::kRight},
-               {"second", Align::kRight},
-               {"warm ns/px", Align::kRight},
-               {"ratio", Align::kRight},
-               {"interpolated", Align::kRight},
-               {"replayed", Align::kRight},
-               {"MB", Align::kRight},
-               {"largest error", Align::kRight},
-               {"beyond", Align::kRight}});
-  for (const SpeedRow& row : rows) {
-    const FrameSpeed& f = row.frames;
-    const FrameSpeed::Turn &cold = f.turns.front(), &warm = f.turns.back();
-    const FrameSpeed::Turn& second = f.turns[std::min<size_t>(1, f.turns.size() - 1)];
-    table.AddRow({row.scene, Grouped(row.study.objects), Grouped(row.study.lights),
-                  absl::StrFormat("%.1f", warm.classical.median),
-                  absl::StrFormat("%.1f", cold.cached.median), absl::StrFormat("%.2f", cold.ratio),
-                  absl::StrFormat("%.2f", second.ratio),
-                  absl::StrFormat("%.1f", warm.cached.median), absl::StrFormat("%.2f", warm.ratio),
-                  absl::StrFormat("%.1f %%", 100 * f.interpolated),
-                  absl::StrFormat("%.1f %%", 100 * f.replayed),
-                  absl::StrFormat("%.2f", static_cast<double>(f.bytes) / 1e6),
-                  absl::StrFormat("%.2g", f.largest_error), Grouped(f.beyond)});
-  }
-  return table.ToString();
-}
-
-nlohmann::json SpreadJson(const SpeedSpread& spread) {
-  return {{"median", spread.median}, {"least", spread.least}, {"most", spread.most}};
-}
-
-nlohmann::json FramesJson(const FrameSpeed& frames) {
-  nlohmann::json json = {{"interpolated", frames.interpolated},
-                         {"replayed", frames.replayed},
-                         {"residual", frames.residual},
-                         {"cells", frames.cells},
-                         {"bytes", frames.bytes},
-                         {"pixels", frames.pixels},
-                         {"beyond", frames.beyond},
-                         {"largest_error", frames.largest_error}};
-  json["turns"] = nlohmann::json::array();
-  for (const FrameSpeed::Turn& turn : frames.turns) {
-    json["turns"].push_back({{"classical_ns_per_pixel", SpreadJson(turn.classical)},
-                             {"cached_ns_per_pixel", SpreadJson(turn.cached)},
-                             {"ratio", turn.ratio}});
-  }
-  return json;
-}
-
-nlohmann::json SpeedJson(const BenchSpeedFlags& flags, const std::vector<SpeedRow>& rows) {
-  nlohmann::json json = {{"width", flags.study.width},
-                         {"height", flags.study.height},
-                         {"repeats", flags.study.repeats},
-                         {"epsilon", flags.epsilon},
-                         {"threads", flags.threads},
-                         {"max_depth", flags.study.limits.max_depth},
-                         {"min_weight", flags.study.limits.min_weight}};
-  json["scenes"] = nlohmann::json::array();
-  for (const SpeedRow& row : rows) {
-    const SpeedStudy& s = row.study;
-    json["scenes"].push_back({{"scene", row.scene},
-                              {"objects", s.objects},
-                              {"lights", s.lights},
-                              {"pixels", s.pixels},
-                              {"scalar_ns_per_pixel", SpreadJson(s.scalar)},
-                              {"packet_ns_per_pixel", SpreadJson(s.packet)},
-                              {"ratio", s.ratio},
-                              {"intersect", s.counts.rays.intersect},
-                              {"shadow", s.counts.rays.shadow},
-                              {"packets", s.counts.packets},
-                              {"shadow_packets", s.counts.shadow_packets},
-                              {"hits_again", HitsAgain(s.counts)},
-                              {"shadows_again", ShadowsAgain(s.counts)},
-                              {"different_topology", s.different_topology},
-                              {"different_counts", s.different_counts},
-                              {"largest_difference", s.largest_difference},
-                              {"allowed_difference", s.allowed_difference},
-                              {"frames", FramesJson(row.frames)}});
-  }
-  return json;
-}
-
-using ScenePtr = std::shared_ptr<const Scene>;
-
-// KIND:OBJECTS:LIGHTS, as --made takes it.
-absl::StatusOr<ScenePtr> MadeScene(const std::string& text) {
-  const std::vector<std::string> parts = absl::StrSplit(text, ':');
-  int objects = 0, lights = 0;
-  const bool good = parts.size() == 3 && absl::SimpleAtoi(parts[1], &objects) && objects >= 1 &&
-                    objects <= 100'000 && absl::SimpleAtoi(parts[2], &lights) && lights >= 1 &&
-                    lights <= 1024;
-  if (good && parts[0] == "spheres") return MakeSpheres(objects, lights);
-  if (good && parts[0] == "room") return MakeRoom(objects, lights, /*mirrors=*/false);
-  if (good && parts[0] == "mirrors") return MakeRoom(objects, lights, /*mirrors=*/true);
-  return absl::InvalidArgumentError(
-      absl::StrCat("--made ", text,
-                   ": expected spheres, room or mirrors, then the number of objects (up to "
-                   "100,000) and of lights (up to 1,024), such as room:18:16"));
-}
-
-struct NamedScene {
-  std::string name;
-  ScenePtr scene;
-};
-
-absl::StatusOr<std::vector<NamedScene>> ScenesOf(const BenchSpeedFlags& flags) {
-  std::vector<std::string> files = flags.scenes;
-  if (files.empty() && flags.made.empty()) {
-    for (const std::string_view name : kScenes) {
-      files.push_back(flags.scenes_dir + "/" + std::string(name));
-    }
-  }
-  std::vector<NamedScene> scenes;
-  for (const std::string& file : files) {
-    auto scene = LoadSceneFile(file);
-    if (!scene.ok()) return scene.status();
-    if ((*scene)->cameras.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat(file, ": expected a camera"));
-    }
-    scenes.push_back({std::filesystem::path(file).stem(), *std::move(scene)});
-  }
-  for (const std::string& made : flags.made) {
-    auto scene = MadeScene(made);
-    if (!scene.ok()) return scene.status();
-    scenes.push_back({made, *std::move(scene)});
-  }
-  return scenes;
-}
-
-absl::StatusOr<std::vector<SpeedRow>> Measure(const BenchSpeedFlags& flags) {
-  const auto scenes = ScenesOf(flags);
-  if (!scenes.ok()) return scenes.status();
-  std::vector<SpeedRow> rows;
-  WorkerPool pool(flags.threads);
+absl::StatusOr<bool> RunScenes(const BenchSpeedFlags& flags, nlohmann::json& json) {
   ProgressBar bar(!flags.quiet && IsTerminal(), "bench speed");
-  for (const auto& [name, scene] : *scenes) {
-    const Tracer tracer(*scene);
-    const PacketTracer packets(tracer);
-    const Camera& camera = scene->cameras[0];
-    const FrameSpeedOptions frames = {flags.study.width, flags.study.height, flags.study.repeats,
-                                      flags.frames,      flags.epsilon,      flags.study.limits};
-    auto speed = StudyFrameSpeed(scene, camera, frames, pool);
-    if (!speed.ok()) return speed.status();
-    rows.push_back({name, StudySpeed(tracer, packets, camera, flags.study), *std::move(speed)});
-    bar.Show(static_cast<double>(rows.size()) / static_cast<double>(scenes->size()));
+  const auto rows = MeasureScenes(flags.plan, [&](double share) { bar.Show(share); });
+  if (!rows.ok()) return rows.status();
+  std::cout << "Classical frames, " << flags.size.width << " x " << flags.size.height
+            << ", one thread, median of " << flags.plan.base.options.repeats << "\n"
+            << TracerTable(*rows)
+            << "\nFrames by packets with the surface trees against classical ones by packets: "
+            << SettingText(flags) << "\n"
+            << PathTable(*rows);
+  PrintMore(flags, *rows);
+  json["scenes"] = nlohmann::json::array();
+  for (const SpeedRow& row : *rows) json["scenes"].push_back(SpeedJson(row));
+  return AllHold(*rows);
+}
+
+absl::StatusOr<bool> RunSweep(const BenchSpeedFlags& flags, Sweep sweep, nlohmann::json& json) {
+  const std::string name(NameOf(sweep));
+  ProgressBar bar(!flags.quiet && IsTerminal(), absl::StrCat("sweep over ", name));
+  const std::vector<double> points = flags.points.empty() ? DefaultPoints(sweep) : flags.points;
+  const auto rows = MeasureSweep(flags.plan, sweep, points, [&](double s) { bar.Show(s); });
+  if (!rows.ok()) return rows.status();
+  std::cout << "Cached frames against classical ones over " << name << ": " << SettingText(flags)
+            << " where it does not say otherwise\n"
+            << PathTable(*rows,
+                         sweep == Sweep::kObjects || sweep == Sweep::kLights ? "point" : name);
+  PrintMore(flags, *rows);
+  std::cout << "\n";
+  nlohmann::json out = {{"sweep", name}, {"rows", nlohmann::json::array()}};
+  for (const SpeedRow& row : *rows) {
+    out["rows"].push_back(SpeedJson(row));
+    out["rows"].back()["point"] = row.point;
   }
-  return rows;
+  json["sweeps"].push_back(std::move(out));
+  if (!flags.svg.empty()) {
+    const std::string file = absl::StrCat(flags.svg, "/", name, ".svg");
+    if (auto s = WriteFileAtomically(file, SvgPlots(SweepPlots(sweep, *rows))); !s.ok()) return s;
+  }
+  return AllHold(*rows);
+}
+
+absl::StatusOr<bool> RunTargets(const BenchSpeedFlags& flags, nlohmann::json& json) {
+  ProgressBar bar(!flags.quiet && IsTerminal(), "targets");
+  const auto results =
+      MeasureAllTargets(flags.plan, flags.target_part, [&](double share) { bar.Show(share); });
+  if (!results.ok()) return results.status();
+  const auto met = std::count_if(results->begin(), results->end(),
+                                 [](const TargetResult& result) { return result.IsMet(); });
+  std::cout << "Targets, median of " << flags.plan.base.options.repeats << "\n"
+            << TargetTable(*results) << met << " of " << results->size() << " met\n";
+  json["targets"] = nlohmann::json::array();
+  for (const TargetResult& result : *results) json["targets"].push_back(TargetJson(result));
+  return std::all_of(results->begin(), results->end(),
+                     [](const TargetResult& result) { return result.beyond == 0; });
+}
+
+absl::StatusOr<bool> RunAll(const BenchSpeedFlags& flags, nlohmann::json& json) {
+  if (flags.targets) return RunTargets(flags, json);
+  if (flags.sweeps.empty()) return RunScenes(flags, json);
+  bool holds = true;
+  json["sweeps"] = nlohmann::json::array();
+  for (const Sweep sweep : flags.sweeps) {
+    const auto held = RunSweep(flags, sweep, json);
+    if (!held.ok()) return held.status();
+    holds = holds && *held;
+  }
+  return holds;
+}
+
+absl::Status CheckSpeedFlags(const BenchSpeedFlags& flags) {
+  for (const Sweep sweep : flags.sweeps) {
+    for (const double point : flags.points) {
+      if (auto s = ValidatePoint(sweep, point); !s.ok()) return s;
+    }
+  }
+  std::vector<std::string> files;
+  if (!flags.json.empty()) files.push_back(flags.json);
+  if (!flags.svg.empty()) files.push_back(flags.svg + "/plot.svg");
+  return CheckFolders(files);
 }
 
 absl::StatusOr<int> BenchSpeed(BenchSpeedFlags& flags) {
-  if (!flags.json.empty()) {
-    if (absl::Status status = CheckFolders({flags.json}); !status.ok()) return status;
+  if (auto s = CheckSpeedFlags(flags); !s.ok()) return s;
+  flags.plan.base.options.width = flags.size.width;
+  flags.plan.base.options.height = flags.size.height;
+  if (!flags.walk.empty()) {
+    const auto path = LoadCameraPath(flags.walk);
+    if (!path.ok()) return path.status();
+    auto views = SampleCameraPath(*path, flags.plan.flights.flight_frames);
+    if (!views.ok()) return views.status();
+    flags.plan.flights.walk = *std::move(views);
   }
-  flags.study.width = flags.size.width;
-  flags.study.height = flags.size.height;
-  const auto rows = Measure(flags);
-  if (!rows.ok()) return rows.status();
-  std::cout << "Classical frames, " << flags.study.width << " x " << flags.study.height
-            << ", one thread, median of " << flags.study.repeats << "\n"
-            << SpeedTable(*rows) << "\nFrames by packets with the surface trees, epsilon "
-            << flags.epsilon << ", against classical ones by packets, " << flags.threads
-            << " thread(s): first, second and frame " << flags.frames << " of one view\n"
-            << FrameTable(*rows);
+  nlohmann::json json = nlohmann::json::object();
+  const auto holds = RunAll(flags, json);
+  if (!holds.ok()) return holds.status();
   if (!flags.json.empty()) {
-    if (auto s = WriteJson(SpeedJson(flags, *rows), flags.json); !s.ok()) return s;
+    if (auto s = WriteJson(json, flags.json); !s.ok()) return s;
   }
-  const bool holds = std::all_of(rows->begin(), rows->end(), [](auto& row) { return row.Holds(); });
-  return holds ? kExitOk : kExitFailure;
+  return *holds ? kExitOk : kExitFailure;
+}
+
+void AddSceneChoice(CLI::App& app, SpeedPlan& plan) {
+  app.add_option("--scene", plan.scenes, "Scene file; may be given again")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->default_str("a choice of the folder's");
+  app.add_option("--scenes", plan.scenes_dir, "Folder of the scenes")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--made", plan.made,
+                 "KIND:OBJECTS:LIGHTS, a scene made for the purpose: spheres, room, mirrors or "
+                 "glass; may be given again")
+      ->type_name("SPEC")
+      ->allow_extra_args(false);
+}
+
+template <size_t N, class Enum>
+std::map<std::string, Enum> ByName(const std::array<std::string_view, N>& names) {
+  std::map<std::string, Enum> values;
+  for (size_t i = 0; i < N; ++i) values[std::string(names[i])] = static_cast<Enum>(i);
+  return values;
+}
+
+void AddSweepFlags(CLI::App& app, BenchSpeedFlags& flags) {
+  CLI::Option* sweep =
+      app.add_option("--sweep", flags.sweeps,
+                     "Over lights, objects, depth, resolution, epsilon or threads, in place of one "
+                     "setting; may be given again")
+          ->transform(CLI::CheckedTransformer(ByName<kSweepNames.size(), Sweep>(kSweepNames)))
+          ->type_name("WHAT")
+          ->allow_extra_args(false);
+  app.add_option_function<std::string>(
+         "--points",
+         [&flags](const std::string& text) {
+           const auto points = ParseNumbers(text);
+           if (!points.ok()) {
+             throw CLI::ValidationError("--points", std::string(points.status().message()));
+           }
+           if (flags.sweeps.size() > 1) {
+             throw CLI::ValidationError("--points", "expected one --sweep");
+           }
+           flags.points = *points;
+         },
+         "Of the sweep")
+      ->type_name("N,N,…")
+      ->default_str("the sweep's own")
+      ->needs(sweep);
+  app.add_option("--svg", flags.svg, "Also draw each sweep into this folder, as WHAT.svg")
+      ->type_name("DIR")
+      ->needs(sweep);
+  app.add_flag("--targets", flags.targets,
+               "What was to be reached, row by row, in scenes and settings of its own")
+      ->excludes(sweep);
+  app.add_option("--target-scenes", flags.target_part,
+                 "Only targets whose scene's name contains this")
+      ->type_name("TEXT")
+      ->needs("--targets");
+}
+
+void AddPathFlags(CLI::App& app, BenchSpeedFlags& flags) {
+  app.add_option("--path", flags.plan.flights.paths,
+                 "cold: first frame of a cache; warm: last of --frames of one view; walk: an orbit "
+                 "of a degree a frame; teleport: random views; may be given again")
+      ->transform(
+          CLI::CheckedTransformer(ByName<kSpeedPathNames.size(), SpeedPath>(kSpeedPathNames)))
+      ->type_name("PATH")
+      ->allow_extra_args(false)
+      ->default_str("cold and warm");
+  app.add_option("--walk", flags.walk, "Camera path for --path walk, in place of the orbit")
+      ->type_name("FILE");
+  app.add_option("--frames", flags.plan.flights.still_frames,
+                 "Frames of one view on one cache; the last is the warm one")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--flight", flags.plan.flights.flight_frames, "Frames of a walk or of teleports")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
+void AddMeasureFlags(CLI::App& app, BenchSpeedFlags& flags) {
+  SpeedSetting& base = flags.plan.base;
+  AddSizeFlags(app, flags.size);
+  app.add_option("--epsilon", base.options.epsilon, "What cached frames promise")
+      ->type_name("E")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--threads", base.threads, "Of cached frames and those they are compared with")
+      ->type_name("N")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  AddLimitsFlags(app, base.options.limits);
+  app.add_option("--repeat", base.options.repeats,
+                 "Times that each frame is taken; the median counts")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_flag("--stages", flags.plan.stages,
+               "Also what each stage costs, by frames that are taken with and without it");
+  app.add_flag("--explain", flags.explain,
+               "Also print what was left out, for each scene and object, and why, after the last "
+               "path's last frame");
+  app.add_option("--json", flags.json, "Also write everything as JSON to this file");
+  AddQuietFlag(app, flags.quiet);
 }
 
 }  // namespace
@@ -270,46 +273,21 @@ void AddBenchSpeed(CLI::App& bench, Commands& commands) {
   auto flags = std::make_shared<BenchSpeedFlags>();
   CLI::App* app = bench.add_subcommand(
       "speed", "Packets against the scalar tracer, cached frames against classical ones");
-  app->add_option("--scene", flags->scenes, "Scene file; may be given again")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->default_str("a choice of the folder's");
-  app->add_option("--scenes", flags->scenes_dir, "Folder of the scenes")
-      ->type_name("DIR")
-      ->capture_default_str();
-  app->add_option(
-         "--made", flags->made,
-         "KIND:OBJECTS:LIGHTS, a scene made for the purpose: spheres, room or mirrors; may be "
-         "given again")
-      ->type_name("SPEC")
-      ->allow_extra_args(false);
-  AddSizeFlags(*app, flags->size);
-  app->add_option("--epsilon", flags->epsilon, "What cached frames promise")
-      ->type_name("E")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app->add_option("--frames", flags->frames,
-                  "Frames of one view on one cache; the last is the warm one")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app->add_option("--threads", flags->threads, "Of cached frames and those they are compared with")
-      ->type_name("N")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  AddLimitsFlags(*app, flags->study.limits);
-  app->add_option("--repeat", flags->study.repeats, "Frames of each tracer; the median counts")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app->add_option("--json", flags->json, "Also write the table as JSON to this file");
-  AddQuietFlag(*app, flags->quiet);
+  AddSceneChoice(*app, flags->plan);
+  AddPathFlags(*app, *flags);
+  AddSweepFlags(*app, *flags);
+  AddMeasureFlags(*app, *flags);
   app->footer(
-      "Frames of the two tracers alternate in one process and one thread. \"Again\": rays that the "
-      "packets leave\nto the scalar tracer. Ends with status 1 when a pixel's ray tree differs, or "
-      "radiance by more than allowed, or a cached pixel is beyond epsilon.\n\nExamples:\n  "
-      "linetree bench speed --json speed.json\n  "
-      "linetree bench speed --scene scenes/room.textproto --width 1920 --height 1080 --repeat 9");
+      "Frames of the two tracers alternate in one process. \"Again\": rays that the packets leave\n"
+      "to the scalar tracer. \"Ratio\": classical / cached of the same view in turn, the median of "
+      "the repeats, then of\nthe frames; \"least\": of the frame that does worst. Ends with status "
+      "1 when a pixel's ray tree differs, or\nradiance by more than allowed, or a cached pixel is "
+      "beyond epsilon; a target that is missed does not count.\n\nExamples:\n"
+      "  linetree bench speed --json speed.json\n"
+      "  linetree bench speed --scene scenes/room.textproto --width 1920 --height 1080 --repeat 9\n"
+      "  linetree bench speed --sweep lights --sweep resolution --svg . --json sweeps.json\n"
+      "  linetree bench speed --sweep objects --points 100,10000 --path walk --path teleport\n"
+      "  linetree bench speed --targets --target-scenes room");
   commands.push_back({app, [flags] { return BenchSpeed(*flags); }});
 }
 

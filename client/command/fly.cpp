@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/command/command.h"
+#include "client/command/explain_report.h"
 #include "client/command/flags.h"
 #include "client/command/frame_report.h"
 #include "client/command/output.h"
@@ -20,6 +21,7 @@ struct FlyFlags {
   SizeFlags size;
   RenderOptions options;
   OutputFlags output;
+  bool explain = false;
   std::string path;
   int frames = 0;  // 0: as many as the path says
 };
@@ -58,6 +60,7 @@ absl::Status WriteFrame(const Frame& frame, const OutputFlags& output, int numbe
 }
 
 absl::StatusOr<int> Fly(const FlyFlags& flags) {
+  if (auto s = ValidateExplain(flags.explain, flags.options); !s.ok()) return s;
   const absl::StatusOr<std::vector<FrameRequest>> requests = RequestsOf(flags);
   if (!requests.ok()) return requests.status();
   if (absl::Status s = CheckOutputs(flags.output, requests->size()); !s.ok()) return s;
@@ -76,6 +79,10 @@ absl::StatusOr<int> Fly(const FlyFlags& flags) {
   if (!written.ok()) return written;
   if (!flags.output.stats.empty()) {
     absl::Status status = WriteJson(report.ToJson(), flags.output.stats);
+    if (!status.ok()) return status;
+  }
+  if (flags.explain) {
+    auto status = PrintExplanation(*session->client, session->scene.name(), flags.options);
     if (!status.ok()) return status;
   }
   return kExitOk;
@@ -99,6 +106,7 @@ void AddFly(CLI::App& parent, Commands& commands) {
   AddSizeFlags(*app, flags->size);
   AddOptionsFlags(*app, flags->options);
   AddOutputFlags(*app, flags->output);
+  AddExplainFlag(*app, flags->explain);
   app->footer(
       "Names of pictures take the number of the frame, from 1, where they have a %d.\n\n"
       "Examples:\n"

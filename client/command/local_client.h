@@ -24,6 +24,11 @@ class LocalClient : public Client {
   absl::StatusOr<v1::SceneInfo> AddScene(const std::string& name,
                                          std::shared_ptr<const Scene> scene, bool replace);
 
+  // What answers for a scene, or NOT_FOUND. Shared: a scene that is unloaded lives until its last
+  // call is done.
+  using HostPointer = std::shared_ptr<SceneHost>;
+  absl::StatusOr<HostPointer> Find(const std::string& name) const;
+
   absl::StatusOr<v1::SceneInfo> LoadScene(const std::string& name, const v1::Scene& scene,
                                           bool replace) override;
   absl::StatusOr<std::vector<v1::SceneInfo>> ListScenes() override;
@@ -40,11 +45,6 @@ class LocalClient : public Client {
   absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) override;
 
  private:
-  // Shared: a scene that is unloaded lives until its last call is done.
-  using HostPointer = std::shared_ptr<SceneHost>;
-
-  absl::StatusOr<HostPointer> Find(const std::string& name) const;
-
   const uint64_t memory_bytes_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   WorkerPool pool_;

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/command/command.h"
+#include "client/command/explain_report.h"
 #include "client/command/flags.h"
 #include "client/command/frame_report.h"
 #include "client/command/output.h"
@@ -20,6 +21,7 @@ struct RenderFlags {
   SizeFlags size;
   RenderOptions options;
   OutputFlags output;
+  bool explain = false;
   int frames = 1;
 };
 
@@ -32,6 +34,7 @@ absl::StatusOr<Frame> RenderOnce(Client& client, const std::string& scene,
 }
 
 absl::StatusOr<int> Render(const RenderFlags& flags) {
+  if (auto s = ValidateExplain(flags.explain, flags.options); !s.ok()) return s;
   std::vector<std::string> files = flags.output.pictures;
   if (!flags.output.stats.empty()) files.push_back(flags.output.stats);
   if (absl::Status status = CheckFolders(files); !status.ok()) return status;
@@ -61,6 +64,10 @@ absl::StatusOr<int> Render(const RenderFlags& flags) {
     absl::Status status = WriteJson(report.ToJson(), flags.output.stats);
     if (!status.ok()) return status;
   }
+  if (flags.explain) {
+    auto status = PrintExplanation(*session->client, session->scene.name(), flags.options);
+    if (!status.ok()) return status;
+  }
   return kExitOk;
 }
 
@@ -81,11 +88,13 @@ void AddRender(CLI::App& parent, Commands& commands) {
       ->capture_default_str()
       ->group("Rendering");
   AddOutputFlags(*app, flags->output);
+  AddExplainFlag(*app, flags->explain);
   app->footer(absl::StrCat(
       "Examples:\n"
       "  linetree render --local --scene scenes/room.textproto -o room.exr -o room.png\n"
       "  linetree render --scene room --epsilon 0.05 --frames 2 --stats room.json\n"
       "  linetree render --scene room --layer verdict -o why.png\n"
+      "  linetree render --local --scene scenes/room.textproto --lanes simd --frames 3 --explain\n"
       "  linetree render --scene room --eye 0,1,6 --look-at 0,1,0 --fov 60 -o view.png\n\n",
       LegendText()));
   commands.push_back({app, [flags] { return Render(*flags); }});

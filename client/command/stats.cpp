@@ -31,6 +31,11 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
     objects.push_back(
         {{"object", object.object()}, {"name", object.name()}, {"cells", std::move(cells)}});
   }
+  nlohmann::json memory = nlohmann::json::array();
+  for (const auto& part : scene.memory()) {
+    memory.push_back({{"name", part.name()}, {"bytes", part.bytes()}});
+    if (part.has_cells()) memory.back()["cells"] = part.cells();
+  }
   return {{"scene", scene.scene()},
           {"scene_version", scene.scene_version()},
           {"frames", scene.frames()},
@@ -38,6 +43,7 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
           {"totals", StatsJson(FrameStatsFromWire(scene.totals()), 0, 0)},
           {"cache_bytes", scene.cache_bytes()},
           {"cells", scene.cells()},
+          {"memory", std::move(memory)},
           {"objects", std::move(objects)},
           {"audit",
            {{"checked", scene.audit().checked()},
@@ -74,6 +80,28 @@ std::string SceneTable(const v1::GetStatsReply& reply) {
                   Grouped(totals.base.intersect + totals.ip.intersect),
                   Grouped(totals.base.shade + totals.ip.shade), Grouped(scene.cells()),
                   Grouped(totals.cells_evicted), Bytes(scene.cache_bytes())});
+  }
+  return table.ToString();
+}
+
+// What is kept for the scenes, a row for every part that there is.
+std::string MemoryTable(const v1::GetStatsReply& reply) {
+  Table table({{"scene"},
+               {"kept"},
+               {"bytes", Align::kRight},
+               {"cells", Align::kRight},
+               {"bytes/cell", Align::kRight}});
+  for (const SceneStats& scene : reply.scenes()) {
+    uint64_t all = 0;
+    for (const auto& part : scene.memory()) {
+      all += part.bytes();
+      if (part.bytes() == 0) continue;
+      const bool counted = part.cells() > 0;
+      table.AddRow({scene.scene(), part.name(), Grouped(part.bytes()),
+                    part.has_cells() ? Grouped(part.cells()) : "",
+                    counted ? Grouped(part.bytes() / part.cells()) : ""});
+    }
+    table.AddRow({scene.scene(), "in all", Grouped(all), "", ""});
   }
   return table.ToString();
 }
@@ -131,7 +159,8 @@ absl::StatusOr<int> Stats(const StatsFlags& flags) {
   std::cout << absl::StrFormat("linetreed %s, up %.0f s, memory budget %s\n\n",
                                reply->server_version(), reply->uptime_s(),
                                Bytes(reply->memory_budget_bytes()))
-            << SceneTable(*reply);
+            << SceneTable(*reply) << "\nMemory; kinds of trees share the budget\n"
+            << MemoryTable(*reply);
   if (reply->audit_share() > 0) {
     std::cout << absl::StrFormat("\nAudit of a share of %g of the answers from caches\n",
                                  reply->audit_share())

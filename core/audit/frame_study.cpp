@@ -47,17 +47,17 @@ void Compare(const Frame& cached, const Frame& classical, double floor, FrameStu
 
 }  // namespace
 
-std::vector<Camera> OrbitOf(const Camera& camera, int frames) {
+std::vector<Camera> OrbitOf(const Camera& camera, int frames, int first_deg) {
   std::vector<Camera> path;
   const Vec3d axis = Normalized(camera.up);
   const Vec3d arm = camera.eye - camera.look_at;
-  for (int i = 0; i < frames; ++i) {
-    const double angle_rad = i * std::numbers::pi / 180;
+  for (int deg = first_deg; deg < first_deg + frames; ++deg) {
+    const double angle_rad = deg * std::numbers::pi / 180;
     const double cosine = std::cos(angle_rad);
     const Vec3d turned = arm * cosine + Cross(axis, arm) * std::sin(angle_rad) +
                          axis * (Dot(axis, arm) * (1 - cosine));
     path.push_back(camera);
-    if (i > 0) path.back().eye = camera.look_at + turned;
+    if (deg != 0) path.back().eye = camera.look_at + turned;
   }
   return path;
 }

@@ -31,9 +31,9 @@ struct FrameStudyRow {
   double path_searches = 0, warm_searches = 0;
 };
 
-// The cameras of a path: `frames` positions around what the camera looks at, 1 degree apart, after
-// the given one.
-std::vector<Camera> OrbitOf(const Camera& camera, int frames);
+// The cameras of a path: `frames` positions around what the camera looks at, 1 degree apart; the
+// given one is at 0 degrees.
+std::vector<Camera> OrbitOf(const Camera& camera, int frames, int first_deg = 0);
 
 absl::StatusOr<std::vector<FrameStudyRow>> StudyFrames(std::shared_ptr<const Scene> scene,
                                                        const std::vector<Camera>& path,

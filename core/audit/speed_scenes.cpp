@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "core/audit/random_stream.h"
 #include "core/audit/scene_parts.h"
 
@@ -145,13 +148,39 @@ void AddWalls(SceneSetter& setter, double reflect) {
   setter.AddPolygon({at(-1, 0, 1), at(-1, 1, 1), at(1, 1, 1), at(1, 0, 1)}, wall);
 }
 
-void AddFurniture(SceneSetter& setter, double ball_reflect) {
+Material Glass(const Rgb& transmit, double ior) {
+  Material material;
+  material.ambient = {0.01, 0.01, 0.01};
+  material.specular = {0.4, 0.4, 0.4};
+  material.exponent = 64;
+  material.reflect = {0.06, 0.06, 0.06};
+  material.transmit = transmit;
+  material.ior = ior;
+  return material;
+}
+
+// What the balls and boxes of a room are made of.
+struct Finish {
+  Material blue, yellow, green;
+};
+
+Finish Painted(double ball_reflect) {
+  return {Paint({0.2, 0.5, 0.8}, 0.6, 0.5, 32, ball_reflect),
+          Paint({0.8, 0.7, 0.2}, 0.6, 0.5, 64, ball_reflect), Paint({0.3, 0.7, 0.3}, 0.7, 0.2, 16)};
+}
+
+Finish Transparent() {
+  return {Glass({0.75, 0.85, 0.95}, 1.5), Glass({0.95, 0.9, 0.7}, 1.5),
+          Glass({0.7, 0.92, 0.75}, 1.3)};
+}
+
+void AddFurniture(SceneSetter& setter, const Finish& finish) {
   const int mirror = setter.AddMaterial(Paint({0.1, 0.1, 0.12}, 0.2, 0, 20, 0.8));
   const int wood = setter.AddMaterial(Paint({0.6, 0.35, 0.15}, 0.6, 0.15, 16));
   const int steel = setter.AddMaterial(Paint({0.5, 0.5, 0.55}, 0.5, 0.4, 32));
-  const int blue = setter.AddMaterial(Paint({0.2, 0.5, 0.8}, 0.6, 0.5, 32, ball_reflect));
-  const int yellow = setter.AddMaterial(Paint({0.8, 0.7, 0.2}, 0.6, 0.5, 64, ball_reflect));
-  const int green = setter.AddMaterial(Paint({0.3, 0.7, 0.3}, 0.7, 0.2, 16));
+  const int blue = setter.AddMaterial(finish.blue);
+  const int yellow = setter.AddMaterial(finish.yellow);
+  const int green = setter.AddMaterial(finish.green);
   setter.AddPolygon({{-1.6, 1.2, -4.95}, {1.6, 1.2, -4.95}, {1.6, 3.4, -4.95}, {-1.6, 3.4, -4.95}},
                     mirror);
   setter.AddBox({-1.3, 0.94, -3}, {1.3, 1.06, -1.4}, wood);
@@ -187,21 +216,63 @@ void AddClutter(SceneSetter& setter, int count) {
   }
 }
 
-}  // namespace
-
-std::shared_ptr<const Scene> MakeRoom(int objects, int lights, bool mirrors) {
+// `extra` adds what no other room has.
+template <class Fn>
+std::shared_ptr<const Scene> FurnishedRoom(const char* name, int objects, int lights,
+                                           double wall_reflect, const Finish& finish, Fn&& extra) {
   auto scene = std::make_shared<Scene>();
-  scene->name = mirrors ? "mirror room" : "room";
+  scene->name = name;
   scene->ambient = kAmbient;
   scene->background = kBackground;
   RandomStream random(18);
   SceneSetter setter(*scene, random, 1, {});
-  AddWalls(setter, mirrors ? 0.85 : 0);
-  AddFurniture(setter, mirrors ? 0.5 : 0.2);
+  AddWalls(setter, wall_reflect);
+  AddFurniture(setter, finish);
+  extra(setter);
   AddClutter(setter, objects - static_cast<int>(scene->objects.size()));
   AddGrid(setter, lights, {-3.2, 3.6, -4.2}, {3.2, 3.6, 4.2}, 1.3);
   AddCamera(*scene, {0.3, 1.9, 3.2}, {0, 1.3, -3}, 60);
   return scene;
+}
+
+bool IsInRange(int number, int most) { return number >= 1 && number <= most; }
+
+}  // namespace
+
+std::shared_ptr<const Scene> MakeRoom(int objects, int lights, bool mirrors) {
+  return FurnishedRoom(mirrors ? "mirror room" : "room", objects, lights, mirrors ? 0.85 : 0,
+                       Painted(mirrors ? 0.5 : 0.2), [](SceneSetter&) {});
+}
+
+std::shared_ptr<const Scene> MakeGlassRoom(int objects, int lights) {
+  return FurnishedRoom("glass room", objects, lights, 0, Transparent(), [](SceneSetter& setter) {
+    const int pane = setter.AddMaterial(Glass({0.9, 0.92, 0.9}, 1.5));
+    setter.AddBox({-1.8, 0.001, -0.6}, {0.4, 2.4, -0.55}, pane);
+  });
+}
+
+std::string MadeScene::Text() const { return absl::StrCat(kind, ":", objects, ":", lights); }
+
+absl::StatusOr<MadeScene> ParseMadeScene(const std::string& text) {
+  const std::vector<std::string> parts = absl::StrSplit(text, ':');
+  MadeScene made;
+  const bool good = parts.size() == 3 && absl::SimpleAtoi(parts[1], &made.objects) &&
+                    IsInRange(made.objects, 100'000) && absl::SimpleAtoi(parts[2], &made.lights) &&
+                    IsInRange(made.lights, 1024);
+  made.kind = parts[0];
+  const bool known = made.kind == "spheres" || made.kind == "room" || made.kind == "mirrors" ||
+                     made.kind == "glass";
+  if (good && known) return made;
+  return absl::InvalidArgumentError(
+      absl::StrCat(text,
+                   ": expected spheres, room, mirrors or glass, then the number of objects (up to "
+                   "100,000) and of lights (up to 1,024), such as room:18:16"));
+}
+
+std::shared_ptr<const Scene> Make(const MadeScene& made) {
+  if (made.kind == "spheres") return MakeSpheres(made.objects, made.lights);
+  if (made.kind == "glass") return MakeGlassRoom(made.objects, made.lights);
+  return MakeRoom(made.objects, made.lights, made.kind == "mirrors");
 }
 
 }  // namespace linetree

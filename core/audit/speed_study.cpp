@@ -97,7 +97,9 @@ class Racer {
 
 SpeedSpread SpreadOf(std::vector<double> ns) {
   std::sort(ns.begin(), ns.end());
-  return {ns[ns.size() / 2], ns.front(), ns.back()};
+  const size_t half = ns.size() / 2;
+  const double median = ns.size() % 2 == 1 ? ns[half] : (ns[half - 1] + ns[half]) / 2;
+  return {median, ns.front(), ns.back()};
 }
 
 SpeedStudy StudySpeed(const Tracer& tracer, const PacketTracer& packets, const Camera& camera,

@@ -20,7 +20,7 @@ struct SpeedSpread {
   double median = 0, least = 0, most = 0;
 };
 
-SpeedSpread SpreadOf(std::vector<double> ns);
+SpeedSpread SpreadOf(std::vector<double> ns);  // of at least one
 
 struct SpeedStudy {
   size_t objects = 0, lights = 0;

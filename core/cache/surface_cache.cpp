@@ -137,6 +137,16 @@ uint64_t SurfaceCache::CellCount() const {
   return store_.cell_count();
 }
 
+std::vector<TreeSize> SurfaceCache::TreeSizes() const {
+  std::shared_lock lock(mutex_);
+  return store_.TreeSizes();
+}
+
+uint64_t SurfaceCache::IndexBytes() const {
+  std::shared_lock lock(mutex_);
+  return store_.index_bytes();
+}
+
 uint64_t SurfaceCache::TreeCount() const {
   std::shared_lock lock(mutex_);
   uint64_t count = 0;

@@ -121,6 +121,26 @@ class FramePlan {
   // How often it was decided.
   uint32_t decisions() const { return decisions_; }
 
+  // What is known of an object, as far as it still counts: older frames' work counts less.
+  struct Known {
+    bool decided = false;  // booked before the last Decide, or skipped by Skip
+    uint32_t points = 0;
+    uint32_t asked = 0, classical = 0;  // work with the trees and without, of all these points
+    bool pays = false;                  // by that work alone
+  };
+  Known KnownOf(size_t object) const {
+    const Account& account = accounts_[object];
+    Known known;
+    known.decided = account.saved.load(std::memory_order_relaxed) != kUnseen;
+    known.points = account.points.load(std::memory_order_relaxed);
+    known.asked = account.asked.load(std::memory_order_relaxed);
+    known.classical = account.classical.load(std::memory_order_relaxed);
+    known.pays = known.points > 0 && SavedOf(known.points, known.asked, known.classical) > 0;
+    return known;
+  }
+  size_t objects() const { return accounts_.size(); }
+  uint64_t ByteSize() const { return sizeof(FramePlan) + accounts_.capacity() * sizeof(Account); }
+
   size_t CountSkipped() const {
     size_t count = 0;
     for (size_t object = 0; object < accounts_.size(); ++object) count += Skips(object) ? 1 : 0;

@@ -21,6 +21,8 @@ constexpr double kRight = 170;  // room for the legend
 constexpr double kTop = 40;
 constexpr double kBottom = 55;
 constexpr double kLegendLine = 18;
+constexpr double kLegendLeft = 40;  // from the plot's right edge to its text
+constexpr double kLetterWidth = 7;  // at most, on average
 
 // Okabe and Ito's palette: tellable apart by colour-blind readers.
 constexpr std::array<const char*, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -160,11 +162,11 @@ class PlotDrawing {
   }
 
   void DrawLegend(size_t index, const std::string& name, const char* color) {
-    const double x = kLeft + kInnerWidth + 14;
+    const double text = kLeft + kInnerWidth + kLegendLeft, x = text - 26;
     const double y = top_ + 10 + kLegendLine * static_cast<double>(index);
     const std::string stroke = absl::StrCat("stroke-width=\"3\" stroke=\"", color, "\"");
     Line(x, y, x + 20, y, stroke.c_str());
-    Text(x + 26, y + 4, "start", name);
+    Text(text, y + 4, "start", name);
   }
 
   const Plot& plot_;
@@ -172,6 +174,16 @@ class PlotDrawing {
   Scale x_{}, y_{};
   std::string svg_;
 };
+
+// Wide enough for the longest name of a legend.
+double WidthOf(const std::vector<Plot>& plots) {
+  size_t longest = 0;
+  for (const Plot& plot : plots) {
+    for (const PlotSeries& series : plot.series) longest = std::max(longest, series.name.size());
+  }
+  const double legend = kLegendLeft + kLetterWidth * static_cast<double>(longest);
+  return kWidth - kRight + std::max(kRight, legend);
+}
 
 std::vector<double> LogarithmicTicks(double min, double max) {
   // A hair wider than the range, so that a power of ten at its end is not lost to rounding.
@@ -212,12 +224,13 @@ std::vector<double> PlotTicks(double min, double max, bool logarithmic, int want
 }
 
 std::string SvgPlots(const std::vector<Plot>& plots) {
+  const double width = WidthOf(plots);
   const double height = kPlotHeight * static_cast<double>(plots.size());
   std::string svg = absl::StrFormat(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
       "viewBox=\"0 0 %.0f %.0f\" font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-      kWidth, height, kWidth, height);
+      width, height, width, height);
   for (size_t i = 0; i < plots.size(); ++i) {
     absl::StrAppend(&svg, PlotDrawing(plots[i], kPlotHeight * static_cast<double>(i)).Draw());
   }

@@ -108,6 +108,12 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   stats.set_cache_bytes(host.CacheBytes());
   stats.set_cells(host.cache().CellCount() + host.paths().CellCount());
   stats.set_surface_cells(host.surfaces().CellCount());
+  for (const MemoryPart& part : host.Memory()) {
+    v1::GetStatsReply::MemoryPart* out = stats.add_memory();
+    out->set_name(std::string(part.name));
+    out->set_bytes(part.bytes);
+    if (part.has_cells) out->set_cells(part.cells);
+  }
   std::vector<Counts> cells = host.cache().CellVerdicts();
   const std::vector<Counts> certified = host.paths().CellVerdicts();
   for (size_t object = 0; object < cells.size(); ++object) {

@@ -109,6 +109,11 @@ bool FitsFloat(const Rgb& rgb) {
          rgb.b >= 0;
 }
 
+template <class T>
+size_t HeapBytes(const std::vector<T>& items) {
+  return items.capacity() * sizeof(T);
+}
+
 // The point does not matter.
 Vec3d FlatNormalOf(const Shape& shape, int face) {
   const Vec3d outward =
@@ -223,8 +228,16 @@ void PacketScene::AddNodes() {
 }
 
 size_t PacketScene::ByteSize() const {
-  return shapes_.capacity() * sizeof(PacketShape) + planes_.capacity() * sizeof(FloatPlane) +
-         nodes_.capacity() * sizeof(PacketNode);
+  size_t bytes = HeapBytes(shapes_) + HeapBytes(planes_) + HeapBytes(nodes_) +
+                 HeapBytes(first_normal_) + HeapBytes(lateral_) + HeapBytes(normals_) +
+                 HeapBytes(materials_.exponent) + HeapBytes(materials_.uses_lights) +
+                 HeapBytes(materials_.shines) + HeapBytes(materials_.spawns) +
+                 HeapBytes(material_of_) + HeapBytes(lights_);
+  for (size_t c = 0; c < 3; ++c) {
+    bytes += HeapBytes(materials_.ambient[c]) + HeapBytes(materials_.diffuse[c]) +
+             HeapBytes(materials_.specular[c]);
+  }
+  return bytes;
 }
 
 }  // namespace linetree

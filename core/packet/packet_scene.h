@@ -116,7 +116,7 @@ class PacketScene {
   }
   // Whether some object lets light through.
   bool has_transparent() const { return has_transparent_; }
-  size_t ByteSize() const;
+  size_t ByteSize() const;  // without the object itself
 
  private:
   void AddShapes();

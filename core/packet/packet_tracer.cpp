@@ -121,7 +121,9 @@ PacketTracer::PacketTracer(const Tracer& tracer, bool sees_squares)
       sees_squares_(sees_squares) {}
 PacketTracer::~PacketTracer() = default;
 
-size_t PacketTracer::ByteSize() const { return sizeof(PacketScene) + scene_->ByteSize(); }
+size_t PacketTracer::ByteSize() const {
+  return sizeof(PacketTracer) + sizeof(PacketScene) + scene_->ByteSize();
+}
 bool PacketTracer::IsWide() const { return scene_->usable() && HaveWideKernels(); }
 
 void PacketTracer::EyePacket(const EyeRays& eye_rays, int column, int row, PacketRays& rays) const {

@@ -45,6 +45,12 @@ struct FrameStats {
   FrameStats& operator+=(const FrameStats& o);
 };
 
+// Of wall_ms, in frames by packets (0 in others): what a cached frame spends on learning.
+struct FrameStages {
+  double probe_ms = 0;  // first tiles, traced with the trees and without to count the work of both
+  double learn_ms = 0;  // cells certified
+};
+
 // Row-major, row 0 on top.
 struct Frame {
   int width = 0;
@@ -61,6 +67,7 @@ struct Frame {
   double white = 1;  // Scene::white: what a picture shows as white
   SceneVersion scene_version;
   FrameStats stats;
+  FrameStages stages;
 };
 
 }  // namespace linetree

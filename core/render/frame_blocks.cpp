@@ -1,6 +1,7 @@
 #include "core/render/frame_blocks.h"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -54,6 +55,22 @@ double PriceOf(const Scene& scene, size_t object) {
       std::holds_alternative<SphereShape>(shape) || std::holds_alternative<FrustumShape>(shape);
   return WorkOfCell(scene.lights.size(), curved);
 }
+
+// Adds the time that it lives to `ms`.
+class StageTimer {
+ public:
+  explicit StageTimer(double& ms) : ms_(ms) {}
+  ~StageTimer() {
+    const auto elapsed = std::chrono::steady_clock::now() - begin_;
+    ms_ += std::chrono::duration<double, std::milli>(elapsed).count();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  double& ms_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 class Blocks {
  public:
@@ -176,6 +193,7 @@ void Blocks::RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of) {
 // Cells that pay for themselves within `horizon` frames like this one.
 uint64_t Blocks::Refine(double weight, double horizon, size_t most_cells) {
   if (IsCancelled()) return 0;
+  const StageTimer timer(frame_.stages.learn_ms);
   // Who cancels does not wait for what others would learn either.
   const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
     const auto unless_cancelled = [&](size_t i) {
@@ -210,7 +228,10 @@ void Blocks::RenderCached() {
   const auto first_tile = [turn](size_t block) {
     return turn < kOftenDecided || (block + turn) % kProbedBlocks == 0 ? FirstTile(block) : 0;
   };
-  RenderWave(0, 0.1, Wave::kBooked, first_tile);
+  {
+    const StageTimer timer(frame_.stages.probe_ms);
+    RenderWave(0, 0.1, Wave::kBooked, first_tile);
+  }
   plan_.Decide();
   const uint64_t cells = Refine(kTilesOfBlock, kSureHorizon, kUnlimited);
   const bool settled = cells == 0 && surfaces_.TreeCount() == trees;

@@ -141,9 +141,26 @@ void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
 }
 
 const PacketTracer& SceneHost::packets() const {
-  std::call_once(packets_made_,
-                 [this] { packets_ = std::make_unique<const PacketTracer>(tracer_); });
+  std::call_once(packets_made_, [this] {
+    packets_ = std::make_unique<const PacketTracer>(tracer_);
+    packet_bytes_ = packets_->ByteSize();
+  });
   return *packets_;
+}
+
+std::vector<MemoryPart> SceneHost::Memory() const {
+  return {{"paper's linetrees", cache_.ByteSize(), cache_.CellCount(), true},
+          {"linetrees", paths_.ByteSize(), paths_.CellCount(), true},
+          {"surface trees", surfaces_.ByteSize(), surfaces_.CellCount(), true},
+          {"tables of trees", surfaces_.IndexBytes() + paths_.IndexBytes()},
+          {"planner", plan_.ByteSize()},
+          {"packets", packet_bytes_}};
+}
+
+SceneHost::Explanation SceneHost::Explain(double max_relative_error) const {
+  const double sum_error = max_relative_error - packets().radiance_rounding();
+  return {ExplainFeatures(packets().scene(), sum_error), ExplainPlan(plan_, surfaces_.TreeSizes()),
+          plan_.decisions()};
 }
 
 bool SceneHost::GoesByPackets(const RenderOptions& options) const {

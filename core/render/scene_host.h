@@ -4,6 +4,7 @@
 // Thread safety: every method may be called from any thread at any time.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -13,10 +14,12 @@
 #include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
 #include "core/frame/frame_plan.h"
+#include "core/frame/plan_explanation.h"
 #include "core/packet/packet_tracer.h"
 #include "core/render/answer_rays.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
+#include "core/render/scene_memory.h"
 #include "core/render/worker_pool.h"
 #include "core/scene/scene.h"
 #include "core/trace/tracer.h"
@@ -68,6 +71,17 @@ class SceneHost {
     return cache_.ByteSize() + surfaces_.ByteSize() + paths_.ByteSize();
   }
   void SetMemoryBytes(uint64_t memory_bytes);
+  // Everything that is kept for the scene: the caches, which share the budget (their bytes are
+  // CacheBytes), and what they and packets need beside it.
+  std::vector<MemoryPart> Memory() const;
+
+  // What frames by packets do about the scene at this epsilon, and the planner about its objects.
+  struct Explanation {
+    std::vector<FeatureNote> features;
+    std::vector<ObjectPlan> objects;
+    uint32_t decisions = 0;  // how often the planner has decided
+  };
+  Explanation Explain(double max_relative_error) const;
 
   // INVALID_ARGUMENT or RESOURCE_EXHAUSTED for a bad request, CANCELLED when `cancel` said so.
   absl::StatusOr<Frame> RenderFrame(const FrameRequest& request, WorkerPool& pool,
@@ -92,6 +106,7 @@ class SceneHost {
   const Tracer tracer_;
   mutable std::once_flag packets_made_;
   mutable std::unique_ptr<const PacketTracer> packets_;
+  mutable std::atomic<uint64_t> packet_bytes_{0};  // 0: not made yet
   RadianceCache cache_;
   SurfaceCache surfaces_;
   PathCache paths_;

@@ -39,6 +39,36 @@ TEST(SpeedScenesTest, SpheresKeepApart) {
   }
 }
 
+TEST(SpeedScenesTest, AGlassRoomSendsRaysThroughItsThings) {
+  const auto scene = MakeGlassRoom(40, 3);
+  EXPECT_EQ(scene->objects.size(), 40u);
+  EXPECT_EQ(scene->lights.size(), 3u);
+  const Tracer tracer(*scene);
+  const EyeRays rays(scene->cameras[0], 32, 32);
+  RayCounts counts;
+  for (int p = 0; p < 32 * 32; ++p) {
+    const Ray ray = rays.ThroughPixel(p % 32, p / 32);
+    tracer.Radiance(ray.origin, ray.direction, {}, counts);
+  }
+  EXPECT_GT(counts.refracted, counts.eye / 3);
+}
+
+TEST(SpeedScenesTest, AreMadeAsWritten) {
+  for (const char* text : {"spheres:30:2", "room:30:2", "mirrors:30:2", "glass:30:2"}) {
+    const auto made = ParseMadeScene(text);
+    ASSERT_TRUE(made.ok()) << made.status();
+    EXPECT_EQ(made->Text(), text);
+    const auto scene = Make(*made);
+    EXPECT_EQ(scene->objects.size(), 30u) << text;
+    EXPECT_EQ(scene->lights.size(), 2u) << text;
+  }
+  EXPECT_EQ(Make(*ParseMadeScene("mirrors:18:1"))->name, "mirror room");
+  for (const char* text :
+       {"room", "room:1", "room:0:1", "room:1:2000", "cave:3:1", "room:1:1:1", "room:x:1", ""}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(ParseMadeScene(text).status())) << text;
+  }
+}
+
 // The walls of a mirror room send most paths on to the end.
 TEST(SpeedScenesTest, MirrorsMakeLongPaths) {
   PathLimits limits;

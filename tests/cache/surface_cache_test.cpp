@@ -61,6 +61,13 @@ TEST_F(SurfaceCacheTest, BytesAreExactAndWithinTheBudget) {
       cache.Refine(50, kSerial);
       ASSERT_LE(cache.ByteSize(), budget);
       ASSERT_EQ(cache.ByteSize(), cache.CountBytes());
+      TreeSize all;
+      for (const TreeSize& size : cache.TreeSizes()) {
+        all.cells += size.cells;
+        all.bytes += size.bytes;
+      }
+      ASSERT_EQ(all.cells, cache.CellCount());
+      ASSERT_EQ(all.bytes, cache.ByteSize());
     }
   }
 }

@@ -76,6 +76,14 @@ TEST(SvgPlot, EmptyAndFlatDataHaveAxesToo) {
   }
 }
 
+TEST(SvgPlot, LongNamesWidenThePicture) {
+  const auto with_name = [](const std::string& name) {
+    return SvgPlots({{"t", {}, {}, {{name, {{0, 1}, {1, 2}}}}}});
+  };
+  EXPECT_THAT(with_name("short"), HasSubstr("width=\"760\""));
+  EXPECT_THAT(with_name(std::string(40, 'x')), HasSubstr("width=\"910\""));
+}
+
 TEST(SvgPlot, TextIsEscaped) {
   EXPECT_THAT(SvgPlots({{"a < b & c", {}, {}, {}}}), HasSubstr("a &lt; b &amp; c"));
 }

@@ -71,6 +71,45 @@ TEST_F(SceneHostTest, CancelStopsWideFrames) {
   EXPECT_TRUE(absl::IsCancelled(host_.RenderFrame(request_, pool_, &cancel).status()));
 }
 
+TEST_F(SceneHostTest, MemoryIsReportedByPart) {
+  const auto bytes_of = [&](std::string_view name) -> uint64_t {
+    for (const MemoryPart& part : host_.Memory()) {
+      if (part.name == name) return part.bytes;
+    }
+    ADD_FAILURE() << name;
+    return 0;
+  };
+  EXPECT_EQ(bytes_of("packets"), 0u);
+  request_.options.lanes = Lanes::kSimd;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(host_.RenderFrame(request_, pool_).ok());
+  EXPECT_EQ(bytes_of("packets"), host_.packets().ByteSize());
+  request_.options.lanes = Lanes::kScalar;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(host_.RenderFrame(request_, pool_).ok());
+  uint64_t budgeted = 0;
+  for (const MemoryPart& part : host_.Memory()) {
+    if (part.has_cells) budgeted += part.bytes;
+  }
+  EXPECT_EQ(budgeted, host_.CacheBytes());
+  EXPECT_GT(bytes_of("surface trees"), 0u);
+  EXPECT_GT(bytes_of("planner"), 0u);
+  EXPECT_GT(bytes_of("tables of trees"), 0u);
+}
+
+TEST_F(SceneHostTest, ExplainsEveryObject) {
+  EXPECT_EQ(host_.Explain(0.1).decisions, 0u);
+  request_.width = request_.height = 192;  // a tile of every 32 x 32 pixels is looked at
+  request_.options.lanes = Lanes::kSimd;
+  const auto frame = host_.RenderFrame(request_, pool_);
+  ASSERT_TRUE(frame.ok());
+  EXPECT_GT(frame->stages.probe_ms, 0);
+  const SceneHost::Explanation explanation = host_.Explain(0.1);
+  EXPECT_EQ(explanation.decisions, 1u);
+  ASSERT_EQ(explanation.objects.size(), host_.scene().objects.size());
+  uint32_t points = 0;
+  for (const ObjectPlan& object : explanation.objects) points += object.points;
+  EXPECT_GT(points, 0u);
+}
+
 TEST_F(SceneHostTest, RaysAndFramesAgree) {
   request_.options.max_relative_error = 0;
   const auto frame = host_.RenderFrame(request_, pool_);

@@ -54,20 +54,6 @@ TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
   EXPECT_EQ(json["tables"][2]["rows"][0]["printed"]["success"], 0.76);
 }
 
-TEST(BenchCommand, SpeedComparesTheTracers) {
-  TempDir dir;
-  const Finished run =
-      RunLinetree({"bench", "speed", "--scene", SourceFile("scenes/peak.textproto"), "--width",
-                   "33", "--height", "21", "--repeat", "1", "--json", dir.File("s.json")});
-  ASSERT_EQ(run.exit_status, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("other trees"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("s.json")));
-  ASSERT_EQ(json["scenes"].size(), 1u);
-  EXPECT_EQ(json["scenes"][0]["pixels"], 693);
-  EXPECT_EQ(json["scenes"][0]["different_topology"], 0);
-  EXPECT_GT(json["scenes"][0]["packet_ns_per_pixel"]["median"], 0);
-}
-
 std::vector<std::string> BenchAudit(std::vector<std::string> more) {
   std::vector<std::string> words = {"bench", "audit", "--threads", "2"};
   for (std::string& word : more) words.push_back(std::move(word));

@@ -33,6 +33,13 @@ TEST(FlyCommand, WritesEveryFrameAndATable) {
   EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir.File("s.json")))["frames"].size(), 3u);
 }
 
+TEST(FlyCommand, ExplainsTheLastFramesPlan) {
+  const Finished run = RunLinetree(Fly({"--frames", "2", "-q", "--lanes", "simd", "--explain"}));
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("Surface trees after 2 decision(s)"));
+  EXPECT_EQ(RunLinetree(Fly({"--explain", "--mode", "classical"})).exit_status, 1);
+}
+
 TEST(FlyCommand, CamerasAreThoseOfThePath) {
   TempDir dir;
   ASSERT_EQ(RunLinetree(Fly({"--frames", "3", "-q", "-o", dir.File("%d.exr")})).exit_status, 0);

@@ -106,6 +106,19 @@ TEST(RenderCommand, ClassicalTracesEverything) {
   EXPECT_GT(json["traced"], 0);
 }
 
+TEST(RenderCommand, ExplainsWhatWasLeftOut) {
+  const Finished run =
+      RunLinetree(Render("many_lights.textproto", {"--lanes", "simd", "--explain"}));
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("diffuse sums"));
+  EXPECT_THAT(run.out, HasSubstr("Surface trees after 1 decision(s)"));
+  EXPECT_THAT(run.out, HasSubstr("floor"));
+  const Finished scalar = RunLinetree(Render("gap.textproto", {"--explain"}));
+  EXPECT_EQ(scalar.exit_status, 1);
+  EXPECT_THAT(scalar.err, HasSubstr("--explain: expected --lanes simd"));
+  EXPECT_EQ(RunLinetree({"render", "--scene", "room", "--explain"}).exit_status, 2);
+}
+
 TEST(RenderCommand, TheViewCanBeGiven) {
   TempDir dir;
   ASSERT_EQ(RunLinetree(Render("gap.textproto", {"--eye", "-1,2,6", "--look-at", "0,.5,0", "--up",

@@ -105,6 +105,7 @@ TEST_F(ServerCommand, StatsShowWhatWasDone) {
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("gap "));
   EXPECT_THAT(run.out, HasSubstr("Cells of gap by verdict"));
+  EXPECT_THAT(run.out, HasSubstr("bytes/cell"));
   EXPECT_THAT(run.out, HasSubstr("Audit of a share of 1 of the answers"));
   run = Run({"stats", "--scene", "gap", "--json"});
   ASSERT_EQ(run.exit_status, 0) << run.err;
@@ -113,6 +114,11 @@ TEST_F(ServerCommand, StatsShowWhatWasDone) {
   EXPECT_EQ(json["scenes"][0]["scene"], "gap");
   EXPECT_GE(json["scenes"][0]["frames"], 1);
   EXPECT_GT(json["memory_budget_bytes"], 0);
+  uint64_t budgeted = 0;
+  for (const auto& part : json["scenes"][0]["memory"]) {
+    if (part.contains("cells")) budgeted += part["bytes"].get<uint64_t>();
+  }
+  EXPECT_EQ(json["scenes"][0]["cache_bytes"], budgeted);
   EXPECT_EQ(json["audit_share"], 1);
   EXPECT_EQ(json["scenes"][0]["audit"]["violations"], 0);
   EXPECT_TRUE(json["scenes"][0]["audit"]["checked"].is_number_unsigned());
