@@ -14,6 +14,7 @@ struct SurfaceCache::Work {
   double least_points = 0;  // Thrift's
   const CellLights* parent = nullptr;
   std::unique_ptr<const CellLights> lights{};  // the result
+  bool may_divide = true;
 };
 
 SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses,
@@ -59,16 +60,30 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
   store_.PlantWanted(memory_bytes_, [&](size_t object) {
     return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
   });
-  if (works.size() > thrift.most_cells) {
-    std::stable_sort(works.begin(), works.end(),
-                     [](const Work& a, const Work& b) { return a.points > b.points; });
-    works.resize(thrift.most_cells);
-  }
   return works;
 }
 
+void SurfaceCache::Trim(std::vector<Work>& works, const Thrift& thrift, double& left) {
+  std::stable_sort(works.begin(), works.end(),
+                   [](const Work& a, const Work& b) { return a.points > b.points; });
+  std::erase_if(works, [&](const Work& work) {
+    const double price = work.node->payload ? 0 : (*thrift.price)(work.object);
+    if (price > left) return true;
+    left -= price;
+    return false;
+  });
+}
+
+void SurfaceCache::AllowDivisions(std::vector<Work>& works, const Thrift& thrift, double left) {
+  for (Work& work : works) {
+    const double price = 4 * (*thrift.price)(work.object);
+    work.may_divide = price <= left;
+    if (work.may_divide) left -= price;
+  }
+}
+
 bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights) const {
-  return work.points >= std::max(min_uses_, 2 * work.least_points) &&
+  return work.may_divide && work.points >= std::max(min_uses_, 2 * work.least_points) &&
          work.node->cell.depth < kMaxSurfaceDepth && lights.WantsSmaller();
 }
 
@@ -108,7 +123,14 @@ uint64_t SurfaceCache::Refine(double weight, const ParallelLoop& loop, const Thr
   std::lock_guard refining(refine_mutex_);
   const uint64_t before = CellCount();
   std::vector<Work> works = CollectUsed(weight, thrift);
-  while (!works.empty()) works = Publish(std::move(works), loop);
+  const bool is_limited = thrift.price != nullptr && std::isfinite(thrift.most_work);
+  double left = thrift.most_work;
+  if (is_limited) Trim(works, thrift, left);
+  while (!works.empty()) {
+    if (is_limited) AllowDivisions(works, thrift, left);
+    works = Publish(std::move(works), loop);
+    for (const Work& child : works) left -= is_limited ? (*thrift.price)(child.object) : 0;
+  }
   const uint64_t certified = CellCount() - before;
   std::unique_lock lock(mutex_);
   store_.Evict(EvictionTarget(memory_bytes_));

@@ -60,7 +60,10 @@ class SurfaceCache {
     const std::function<double(size_t)>* least_points = nullptr;
     // Whether an object without a tree may get one. Null: all.
     const std::function<bool(size_t)>* may_grow = nullptr;
-    size_t most_cells = std::numeric_limits<size_t>::max();  // those that most points ask for
+    // What a cell of an object costs, and what all may cost together: those that most points ask
+    // for come first. Null: nothing.
+    const std::function<double(size_t)>* price = nullptr;
+    double most_work = std::numeric_limits<double>::infinity();
   };
   // Certifies and divides the cells that were used since the last call where that pays; `weight` is
   // the number of shading points that one use stands for. Returns how many cells it certified.
@@ -83,6 +86,10 @@ class SurfaceCache {
   // Whether smaller cells are worth their cost, with what is known of this one.
   bool ShouldDivide(const Work& work, const CellLights& lights) const;
   std::vector<Work> CollectUsed(double weight, const Thrift& thrift);
+  // Drops works that cost more than `left`, which is reduced by what the others do.
+  static void Trim(std::vector<Work>& works, const Thrift& thrift, double& left);
+  // Says which of the works may be divided, for what is left.
+  static void AllowDivisions(std::vector<Work>& works, const Thrift& thrift, double left);
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
 

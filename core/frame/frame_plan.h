@@ -77,10 +77,16 @@ class FramePlan {
   }
 
   // So much work was done with the trees for so many shading points, and so much would have been
-  // done without. Of lanes in no cell yet `asked` is what the question costs and what cells cost at
-  // least.
-  void Book(size_t object, uint32_t points, uint32_t asked, uint32_t classical) {
+  // done without. Of lanes in no cell yet (not `known`) `asked` is what the question costs and what
+  // cells cost at least.
+  void Book(size_t object, uint32_t points, uint32_t asked, uint32_t classical, bool known = true) {
     Account& account = accounts_[object];
+    booked_.fetch_add(classical, std::memory_order_relaxed);
+    if (asked < classical) {
+      (known ? saved_ : promised_).fetch_add(classical - asked, std::memory_order_relaxed);
+    } else if (known && !Skips(object)) {
+      saved_.fetch_sub(asked - classical, std::memory_order_relaxed);
+    }
     account.points.fetch_add(points, std::memory_order_relaxed);
     account.asked.fetch_add(asked, std::memory_order_relaxed);
     account.classical.fetch_add(classical, std::memory_order_relaxed);
@@ -89,9 +95,18 @@ class FramePlan {
   // The object's trees are not worth planting; until it is booked again.
   void Skip(size_t object) { accounts_[object].saved.store(0, std::memory_order_relaxed); }
 
+  // What was booked since the last Decide: work without trees, what they saved of it, and what
+  // cells that are still to be built promise to save.
+  struct Booked {
+    double classical = 0, saved = 0, promised = 0;
+  };
+
   // Takes what was booked into account.
-  void Decide() {
+  Booked Decide() {
     std::lock_guard lock(decide_mutex_);
+    const Booked booked = {static_cast<double>(booked_.exchange(0, std::memory_order_relaxed)),
+                           static_cast<double>(saved_.exchange(0, std::memory_order_relaxed)),
+                           static_cast<double>(promised_.exchange(0, std::memory_order_relaxed))};
     bool wants_any = false;
     uint64_t points = 0, asked = 0, classical = 0;
     for (size_t object = 0; object < accounts_.size(); ++object) {
@@ -114,6 +129,7 @@ class FramePlan {
     if (points > 0) usual_ = SavedOf(points, asked, classical);
     if (points > 0) wants_any_ = wants_any;
     ++decisions_;
+    return booked;
   }
   // Whether some object's trees were found to pay.
   bool WantsAny() const { return always_ || wants_any_; }
@@ -165,6 +181,7 @@ class FramePlan {
   std::vector<Account> accounts_;  // by object
   std::atomic<float> usual_{1};    // saved per point, of all objects together
   std::atomic<bool> wants_any_{true};
+  std::atomic<int64_t> booked_{0}, saved_{0}, promised_{0};
   std::atomic<uint32_t> decisions_{0};
   std::mutex decide_mutex_;
 };

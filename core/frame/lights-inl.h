@@ -108,6 +108,7 @@ class CachedLights {
     LaneMask lanes;
     uint32_t work;
     bool is_sheet;  // or could be
+    bool known;     // all in cells that are built
   };
   // What there is to do about one light.
   struct Work {
@@ -139,9 +140,10 @@ class CachedLights {
         continue;
       }
       Visit& visit = visit_[visits_++];
-      visit = {object, same, 0, MayBeSheet(packet, object, face, same)};
+      visit = {object, same, 0, MayBeSheet(packet, object, face, same), true};
       const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
       if (tree == nullptr) {
+        visit.known = false;
         visit.work = (visit.is_sheet ? 0 : kPlaneWork) + WorkIn(nullptr, visit.is_sheet);
         unknown_ |= same;
         continue;
@@ -168,6 +170,7 @@ class CachedLights {
       if (booking_) {
         Visit& visit = visit_[visits_ - 1];
         visit.work += WorkIn(node.payload.get(), visit.is_sheet);
+        visit.known = visit.known && node.payload != nullptr;
       }
       if (node.payload == nullptr) {
         unknown_ |= same;
@@ -361,7 +364,9 @@ class CachedLights {
     const auto all = static_cast<uint32_t>(std::popcount(lanes));
     for (int i = 0; i < visits_; ++i) {
       const auto own = static_cast<uint32_t>(std::popcount(visit_[i].lanes));
-      plan_.Book(static_cast<size_t>(visit_[i].object), own, visit_[i].work, classical * own / all);
+      const Visit& visit = visit_[i];
+      plan_.Book(static_cast<size_t>(visit.object), own, visit.work, classical * own / all,
+                 visit.known);
     }
   }
 

@@ -1,9 +1,9 @@
 #include "core/render/frame_blocks.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -11,49 +11,42 @@
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
+#include "core/render/grow_trees.h"
 #include "core/render/tile_sources.h"
 
 namespace linetree {
 namespace {
 
 constexpr int kTilesOfBlock = kBlockPixels / kPacketLanes;
-constexpr int kTilesOfSecondWave = 4;
+constexpr size_t kTilesInRow = kBlockSide / 4;
 constexpr uint64_t kAllTiles = ~uint64_t{0};
 static_assert(kTilesOfBlock == 64);
 
-// Two tiles' worth: smaller samples say little.
-constexpr uint32_t kLeastUses = 32;
-// What is learnt for the frames to come may cost this share of a frame of about kPixelWork a pixel
-// (see frame_plan.h), and is to be worth its price within kHorizon frames.
-constexpr double kLearningShare = 0.03;
-constexpr double kPixelWork = 30;
-constexpr double kHorizon = 6;
-// What is built for the rest of a frame is to be worth eight times its price within that frame:
-// savings are promised before they are known.
-constexpr double kSureHorizon = 1.0 / 8;
+// Cells that promise to save less than this share of the frame's work can wait for its end.
+constexpr double kLeastPromise = 0.1;
 constexpr uint32_t kOftenDecided = 3;
 constexpr size_t kProbedBlocks = 4;  // then one in so many blocks is
-constexpr size_t kUnlimited = std::numeric_limits<size_t>::max();
+constexpr size_t kMostProbed = 256;  // there is no need for more
 
 // Blocks that one parallel loop handles: enough to hide its cost, few enough to stop soon.
 constexpr size_t kSliceBlocks = 256;
 
-// Tiles of the first and of the first two waves: scattered, so that no pattern of the picture can
-// hide from them.
+// One tile of a block, first of all: scattered, so that no pattern of the picture can hide from it.
 uint64_t FirstTile(size_t block) { return uint64_t{1} << (block * 29 % kTilesOfBlock); }
-// With a square of four elsewhere: rays that stay together are traced faster.
-uint64_t FirstTiles(size_t block) {
-  constexpr size_t kSquares = kTilesOfBlock / kTilesOfSecondWave;
-  const size_t square = block * 11 % kSquares;
-  const size_t corner = square / 4 * 16 + square % 4 * 2;  // of eight tiles a row
-  return FirstTile(block) | uint64_t{0x303} << corner;
+// Then squares of so many tiles a side, elsewhere: rays that stay together are traced faster.
+constexpr std::array<size_t, 2> kSquareSides = {2, 4};
+// The top left one of such a square, and all of it.
+uint64_t CornerOf(size_t block, size_t side) {
+  const size_t squares = kTilesInRow / side;
+  const size_t square = block * 11 % (squares * squares);
+  return uint64_t{1} << (square / squares * side * kTilesInRow + square % squares * side);
 }
-
-double PriceOf(const Scene& scene, size_t object) {
-  const Shape& shape = scene.objects[object].shape;
-  const bool curved =
-      std::holds_alternative<SphereShape>(shape) || std::holds_alternative<FrustumShape>(shape);
-  return WorkOfCell(scene.lights.size(), curved);
+uint64_t SquareOf(size_t block, size_t side) {
+  uint64_t tiles = 0;
+  for (size_t row = 0; row < side; ++row) {
+    tiles |= (CornerOf(block, side) * ((uint64_t{1} << side) - 1)) << (row * kTilesInRow);
+  }
+  return tiles;
 }
 
 // Adds the time that it lives to `ms`.
@@ -100,6 +93,7 @@ class Blocks {
  private:
   // Whether the trees are asked, and the work is booked.
   enum class Wave { kClassical, kCached, kBooked };
+  using TilesOf = std::function<uint64_t(size_t block)>;
 
   PacketTracer::Region RegionOf(size_t block) const {
     const int column = static_cast<int>(block) % across_ * kBlockSide;
@@ -117,9 +111,15 @@ class Blocks {
 
   template <class Fn>
   void ForBlocks(double from, double to, Fn&& body);
-  template <class TilesOf>
-  void RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of);
-  uint64_t Refine(double weight, double horizon, size_t most_cells);
+  void RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of);
+  uint64_t Grow(const Growth& growth);
+  FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
+  void RenderSquares(size_t side, double speculation, std::vector<uint64_t>& done);
+  // In one of so many blocks a tile is booked.
+  size_t ProbedBlocks(uint32_t turn) const {
+    const size_t often = std::max<size_t>(1, BlockCount() / kMostProbed);
+    return turn < kOftenDecided ? often : kProbedBlocks * often;
+  }
 
   const PacketTracer& packets_;
   SurfaceCache& surfaces_;
@@ -165,8 +165,7 @@ void Blocks::ForBlocks(double from, double to, Fn&& body) {
   }
 }
 
-template <class TilesOf>
-void Blocks::RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of) {
+void Blocks::RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of) {
   // Where no tree pays there is nothing to look up.
   if (wave == Wave::kCached && plan_.SkipsAll()) wave = Wave::kClassical;
   const bool asked = wave != Wave::kClassical;
@@ -190,8 +189,7 @@ void Blocks::RenderWave(double from, double to, Wave wave, TilesOf&& tiles_of) {
   for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
 }
 
-// Cells that pay for themselves within `horizon` frames like this one.
-uint64_t Blocks::Refine(double weight, double horizon, size_t most_cells) {
+uint64_t Blocks::Grow(const Growth& growth) {
   if (IsCancelled()) return 0;
   const StageTimer timer(frame_.stages.learn_ms);
   // Who cancels does not wait for what others would learn either.
@@ -201,52 +199,62 @@ uint64_t Blocks::Refine(double weight, double horizon, size_t most_cells) {
     };
     pool_.ParallelFor(count, unless_cancelled, &frame_.stats.cpu_ms);
   };
-  const Scene& scene = packets_.tracer().scene();
-  const std::function<double(size_t)> least_points = [&](size_t object) {
-    if (plan_.Skips(object)) return Box3::kInf;
-    return PriceOf(scene, object) / (horizon * plan_.SavedPerPoint(object));
-  };
-  // What is booked is one tile in kTilesOfBlock, and half of it once it has been looked at.
-  const std::function<bool(size_t)> may_grow = [&](size_t object) {
-    const bool pays =
-        plan_.SavedInAll(object) * 2 * kTilesOfBlock * kHorizon >= PriceOf(scene, object);
-    if (!pays) plan_.Skip(object);
-    return pays;
-  };
-  const uint64_t cells = surfaces_.Refine(weight, loop,
-                                          {plan_.always() ? 1 : kLeastUses, &least_points,
-                                           &may_grow, plan_.always() ? kUnlimited : most_cells});
+  const uint64_t cells = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, growth, loop);
   frame_.stats.cells_tried += cells;
   frame_.stats.cells_accepted += cells;
   return cells;
 }
 
+// Trees grow by what they earn: first for a small share of the frame's work, then, square by
+// square, for half of what the cells built so far are measured to save in the rest of the frame.
 void Blocks::RenderCached() {
   const uint64_t trees = surfaces_.TreeCount();
   // Who has decided often looks less often.
   const uint32_t turn = plan_.decisions();
-  const auto first_tile = [turn](size_t block) {
-    return turn < kOftenDecided || (block + turn) % kProbedBlocks == 0 ? FirstTile(block) : 0;
+  const size_t probed = ProbedBlocks(turn);
+  const auto first_tile = [&](size_t block) {
+    return (block + turn) % probed == 0 ? FirstTile(block) : 0;
   };
-  {
-    const StageTimer timer(frame_.stages.probe_ms);
-    RenderWave(0, 0.1, Wave::kBooked, first_tile);
+  const FramePlan::Booked first = Probe(0, 0.05, first_tile);
+  const auto share = static_cast<double>(kTilesOfBlock * probed);
+  const double work =
+      kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
+  const double speculation = std::min(kSpeculation * work, share * first.promised / 2);
+  const uint64_t cells = Grow({share, kSureHorizon, speculation});
+  std::vector<uint64_t> done(BlockCount());
+  for (size_t block = 0; block < done.size(); ++block) done[block] = first_tile(block);
+  // Trees that have just been planted have no cells.
+  const bool planted = surfaces_.TreeCount() != trees;
+  const bool promising = share * first.promised > kLeastPromise * work;
+  if ((cells > 0 || planted) && promising && plan_.WantsAny()) {
+    for (const size_t side : kSquareSides) RenderSquares(side, speculation, done);
   }
-  plan_.Decide();
-  const uint64_t cells = Refine(kTilesOfBlock, kSureHorizon, kUnlimited);
-  const bool settled = cells == 0 && surfaces_.TreeCount() == trees;
-  if (settled || !plan_.WantsAny()) {
-    RenderWave(0.1, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~first_tile(block); });
-  } else {
-    RenderWave(0.1, 0.3, Wave::kCached,
-               [&](size_t block) { return FirstTiles(block) & ~first_tile(block); });
-    Refine(static_cast<double>(kTilesOfBlock) / kTilesOfSecondWave, kSureHorizon, kUnlimited);
-    RenderWave(0.3, 1, Wave::kCached,
-               [&](size_t block) { return kAllTiles & ~FirstTiles(block) & ~first_tile(block); });
-  }
-  const double work = kLearningShare * kPixelWork * static_cast<double>(frame_.object.size());
-  const size_t lights = packets_.tracer().scene().lights.size();
-  Refine(1, kHorizon, static_cast<size_t>(work / WorkOfCell(lights, false)));
+  RenderWave(0.5, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~done[block]; });
+  Grow({1, kLearningHorizon, kLearningShare * work});
+}
+
+FramePlan::Booked Blocks::Probe(double from, double to, const TilesOf& tiles_of) {
+  const StageTimer timer(frame_.stages.probe_ms);
+  RenderWave(from, to, Wave::kBooked, tiles_of);
+  return plan_.Decide();
+}
+
+// One tile of some is booked.
+void Blocks::RenderSquares(size_t side, double speculation, std::vector<uint64_t>& done) {
+  const double progress = static_cast<double>(side * side) / kTilesOfBlock;
+  const size_t probed = kProbedBlocks * ProbedBlocks(0);
+  const auto corner = [&](size_t block) {
+    return block % probed == 0 ? CornerOf(block, side) & ~done[block] : 0;
+  };
+  const FramePlan::Booked booked = Probe(progress / 2, progress / 2, corner);
+  RenderWave(progress / 2, progress, Wave::kCached,
+             [&](size_t block) { return SquareOf(block, side) & ~corner(block) & ~done[block]; });
+  for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, side);
+  const double left = static_cast<double>(kTilesOfBlock * probed) * (1 - progress);
+  // Before anything has been built there is nothing to measure.
+  const double earned = kReinvested * left * booked.saved;
+  const double budget = side == kSquareSides[0] ? std::max(earned, speculation) : earned;
+  Grow({1 / progress, kSureHorizon, std::max(budget, 0.0)});
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "core/render/grow_trees.h"
 
 #include <functional>
-#include <limits>
 #include <variant>
 
 namespace linetree {
@@ -9,11 +8,6 @@ namespace {
 
 // Two packets' worth: smaller samples say little.
 constexpr uint32_t kLeastUses = 32;
-// What is learnt may cost this share of the work of a frame, of about kRayWork a ray (see
-// frame_plan.h).
-constexpr double kLearningShare = 0.03;
-constexpr double kRayWork = 30;
-
 double PriceOf(const Scene& scene, size_t object) {
   const Shape& shape = scene.objects[object].shape;
   const bool curved =
@@ -36,14 +30,11 @@ uint64_t GrowTrees(const Scene& scene, SurfaceCache& surfaces, FramePlan& plan,
     if (!pays) plan.Skip(object);
     return pays;
   };
-  const size_t most_cells = plan.always() ? std::numeric_limits<size_t>::max() : growth.most_cells;
-  return surfaces.Refine(growth.weight, loop,
-                         {plan.always() ? 1 : kLeastUses, &least_points, &may_grow, most_cells});
-}
-
-size_t CellsToLearn(const Scene& scene, size_t rays) {
-  const double work = kLearningShare * kRayWork * static_cast<double>(rays);
-  return static_cast<size_t>(work / WorkOfCell(scene.lights.size(), false));
+  const std::function<double(size_t)> price = [&](size_t object) { return PriceOf(scene, object); };
+  const double most_work = plan.always() ? Box3::kInf : growth.most_work;
+  return surfaces.Refine(
+      growth.weight, loop,
+      {plan.always() ? 1 : kLeastUses, &least_points, &may_grow, &price, most_work});
 }
 
 }  // namespace linetree

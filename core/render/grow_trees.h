@@ -17,22 +17,27 @@ namespace linetree {
 // before they are known.
 inline constexpr double kLearningHorizon = 6;
 inline constexpr double kSureHorizon = 1.0 / 8;
+// Of what cells are known to save in the rest of a request, so much may be spent on more of them.
+inline constexpr double kReinvested = 0.5;
 
 // Packets of a block: one in so many is booked in the plan.
 inline constexpr size_t kBlockPackets = 64;
 
 // What has just been asked for, and what it may cost.
 struct Growth {
-  double weight;      // shading points that one use stands for
-  double horizon;     // a cell is worth its price within so many requests like this one
-  size_t most_cells;  // those that most points ask for
+  double weight;     // shading points that one use stands for
+  double horizon;    // a cell is worth its price within so many requests like this one
+  double most_work;  // what they may cost together: those that most points ask for come first
 };
 
 // Certifies the cells that pay for themselves, and returns how many.
 uint64_t GrowTrees(const Scene& scene, SurfaceCache& surfaces, FramePlan& plan,
                    const Growth& growth, const ParallelLoop& loop);
 
-// Cells that may be learnt for the requests to come, after one of so many rays.
-size_t CellsToLearn(const Scene& scene, size_t rays);
+// Of a request's work (kRayWork for each of its rays, and what lights cost without trees), what may
+// be spent on cells before anything is known of what they save, and, at its end, on those that are
+// learnt for the requests to come.
+inline constexpr double kSpeculation = 0.03, kLearningShare = 0.03;
+inline constexpr double kRayWork = 10;
 
 }  // namespace linetree

@@ -181,7 +181,6 @@ void RayBlocks::TraceCached() {
     TraceWave(false, [](size_t) { return kAllPackets; });
     return;
   }
-  constexpr size_t kUnlimited = std::numeric_limits<size_t>::max();
   const uint64_t trees = surfaces_.TreeCount();
   // Who has decided often looks less often.
   const uint32_t turn = plan_.decisions();
@@ -189,18 +188,22 @@ void RayBlocks::TraceCached() {
     return turn < kOftenDecided || (block + turn) % kProbedBlocks == 0 ? FirstPacket(block) : 0;
   };
   TraceWave(true, first);
-  plan_.Decide();
-  const uint64_t cells = Grow({kBlockPackets, kSureHorizon, kUnlimited});
+  const FramePlan::Booked booked = plan_.Decide();
+  const double share = kBlockPackets * (turn < kOftenDecided ? 1.0 : kProbedBlocks);
+  const double work = kRayWork * static_cast<double>(rays_.size()) + booked.classical * share;
+  const double speculation = std::min(kSpeculation * work, share * booked.promised / 2);
+  const uint64_t cells = Grow({kBlockPackets, kSureHorizon, speculation});
   const bool settled = cells == 0 && surfaces_.TreeCount() == trees;
   if (settled || !plan_.WantsAny()) {
     TraceWave(false, [&](size_t block) { return kAllPackets & ~first(block); });
   } else {
     TraceWave(false, [&](size_t block) { return SecondPackets(block) & ~first(block); });
-    Grow({static_cast<double>(kBlockPackets) / kPacketsOfSecondWave, kSureHorizon, kUnlimited});
+    Grow({static_cast<double>(kBlockPackets) / kPacketsOfSecondWave, kSureHorizon,
+          kReinvested * share * std::max(booked.saved, 0.0)});
     TraceWave(false,
               [&](size_t block) { return kAllPackets & ~SecondPackets(block) & ~first(block); });
   }
-  Grow({1, kLearningHorizon, CellsToLearn(scene(), rays_.size())});
+  Grow({1, kLearningHorizon, kLearningShare * work});
 }
 
 RayAnswer RayBlocks::AnswerOf(const RayResult& result) const {
