@@ -23,10 +23,13 @@ class Spawner {
                      PacketCounts& counts)
       : scene_(scene), limits_(limits), workspace_(workspace), counts_(counts) {}
 
-  // The rays go to the queues of level depth mod 2. Sets the lanes that reflect totally.
+  // The rays go to the queues of level depth mod 2, in the order of their lanes: how the rays of
+  // one pixel follow each other, and so how their light is summed, must not depend on other
+  // pixels'. Sets the lanes that reflect totally.
   void Spawn(const PathPacket& packet, const PacketHits& hits, int depth, LaneMask& total) {
     if (depth >= limits_.max_depth) return;
     level_ = depth % 2;
+    reflected_.lanes = transmitted_.lanes = transmitted_into_ = 0;
     for (LaneMask left = hits.hit; left != 0;) {
       const int32_t object = hits.object[std::countr_zero(left)];
       const LaneMask same = BitsOf(Ints::Load(hits.object) == Ints::All(object)) & left;
@@ -37,9 +40,25 @@ class Spawner {
         SpawnFrom(packet, hits, object, same, total);
       }
     }
+    Append(packet, hits, reflected_, Branch::kReflected, hits.inside);
+    Append(packet, hits, transmitted_, Branch::kTransmitted, transmitted_into_);
   }
 
  private:
+  // The rays of one branch.
+  struct Leg {
+    LaneMask lanes = 0;
+    PacketVectors direction;
+    const Rgb* coefficient[kPacketLanes];
+
+    void Add(const WideVectors& along, LaneMask more, const Rgb& k) {
+      if (more == 0) return;
+      Store(lanes == 0 ? along : Select(TruthOf<double>(more), along, Load(direction)), direction);
+      lanes |= more;
+      for (; more != 0; more &= more - 1) coefficient[std::countr_zero(more)] = &k;
+    }
+  };
+
   // Lanes whose branch with coefficient k is cast: PathLimits::Allow.
   HWY_INLINE LaneMask Allowed(const PathPacket& packet, const Rgb& k, LaneMask lanes) const {
     if (IsBlack(k)) return 0;
@@ -63,12 +82,11 @@ class Spawner {
     if ((reflects | reflects_all) != 0) {
       const Doubles twice = Doubles::All(2) * Dot(n, d);
       const WideVectors mirrored = d - n * twice;
-      Append(packet, hits, mirrored, reflects, Branch::kReflected, hits.inside, material.reflect);
-      Append(packet, hits, mirrored, reflects_all, Branch::kReflected, hits.inside, {1, 1, 1});
+      reflected_.Add(mirrored, reflects, material.reflect);
+      reflected_.Add(mirrored, reflects_all, kAll);
     }
-    const LaneMask into = IsPlanar(shape) ? 0 : ~hits.inside;
-    Append(packet, hits, through, asked & ~reflects_all, Branch::kTransmitted, into,
-           material.transmit);
+    if (!IsPlanar(shape)) transmitted_into_ |= lanes & ~hits.inside;
+    transmitted_.Add(through, asked & ~reflects_all, material.transmit);
   }
 
   // As Refracted, with the indices that each lane finds; sets the lanes of total reflection.
@@ -97,37 +115,39 @@ class Spawner {
   }
 
   // `inside`: lanes whose rays leave into the inside.
-  void Append(const PathPacket& packet, const PacketHits& hits, const WideVectors& direction,
-              LaneMask lanes, Branch branch, LaneMask inside, const Rgb& k) {
-    if (lanes == 0) return;
+  void Append(const PathPacket& packet, const PacketHits& hits, const Leg& leg, Branch branch,
+              LaneMask inside) {
+    if (leg.lanes == 0) return;
     const bool reflected = branch == Branch::kReflected;
     (reflected ? counts_.rays.reflected : counts_.rays.refracted) +=
-        static_cast<uint64_t>(std::popcount(lanes));
-    PacketVectors directions;
-    Store(direction, directions);
-    const double largest = MaxChannel(k);
-    const float factor[3] = {static_cast<float>(k.r), static_cast<float>(k.g),
-                             static_cast<float>(k.b)};
+        static_cast<uint64_t>(std::popcount(leg.lanes));
     PacketWorkspace::Queue& queue = workspace_.queue(level_, reflected ? 0 : 1);
-    for (LaneMask left = lanes; left != 0; left &= left - 1) {
+    for (LaneMask left = leg.lanes; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       PathPacket& to = queue.Room();
       const int at = queue.lanes++;
       const Side side = (inside >> lane & 1) != 0 ? Side::kInside : Side::kOutside;
-      to.rays.SetRay(at, hits.point.At(lane), directions.At(lane),
+      to.rays.SetRay(at, hits.point.At(lane), leg.direction.At(lane),
                      {hits.object[lane], hits.face[lane], side});
-      to.weight[at] = packet.weight[lane] * largest;
-      for (int c = 0; c < 3; ++c) to.throughput[c][at] = packet.throughput[c][lane] * factor[c];
+      const Rgb& k = *leg.coefficient[lane];
+      to.weight[at] = packet.weight[lane] * MaxChannel(k);
+      for (int c = 0; c < 3; ++c) {
+        to.throughput[c][at] = packet.throughput[c][lane] * static_cast<float>(k[c]);
+      }
       to.pixel[at] = packet.pixel[lane];
       to.path[at] = PathOf(packet.path[lane], branch);
     }
   }
+
+  static constexpr Rgb kAll{1, 1, 1};
 
   const PacketScene& scene_;
   const PathLimits& limits_;
   PacketWorkspace& workspace_;
   PacketCounts& counts_;
   int level_ = 0;
+  Leg reflected_, transmitted_;
+  LaneMask transmitted_into_ = 0;  // of the transmitted: those that leave into the inside
 };
 
 }  // namespace linetree::HWY_NAMESPACE

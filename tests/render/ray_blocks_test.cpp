@@ -132,6 +132,37 @@ TEST(RayBlocksTest, ClassicalOnesAreTheScalarTracersInEveryOrder) {
   }
 }
 
+// Where few rays branch, several of one path meet again in a packet, among those of other paths.
+TEST(RayBlocksTest, LightOfDeepPathsIsSummedAsOfEachRayAlone) {
+  WorkerPool pool(1);
+  uint64_t deep = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    auto scene = std::make_shared<Scene>(*RandomScene(seed));
+    test::Random random(seed);
+    for (Material& material : scene->materials) {
+      material.reflect = test::RandomRgb(random, 0.9);
+      material.transmit = test::RandomRgb(random, 0.9);
+    }
+    SceneHost host(scene);
+    RenderOptions options = Options(Mode::kClassical, 0, RayOrder::kAsGiven);
+    options.limits.max_depth = 7;
+    options.limits.min_weight = 1e-3;
+    const std::vector<Ray> rays = RandomRays(seed, 240);
+    for (size_t first = 0; first < rays.size(); first += 6) {
+      const std::vector<Ray> few(rays.begin() + static_cast<std::ptrdiff_t>(first),
+                                 rays.begin() + static_cast<std::ptrdiff_t>(first) + 6);
+      const RayBatch together = Answers(host, few, options, pool);
+      RayBatch alone;
+      for (const Ray& ray : few) {
+        alone.answers.push_back(Answers(host, {ray}, options, pool).answers[0]);
+      }
+      ExpectSame(together, alone, "scene " + std::to_string(seed));
+      deep += together.stats.base.reflected + together.stats.base.refracted;
+    }
+  }
+  EXPECT_GT(deep, 10'000u);
+}
+
 TEST(RayBlocksTest, AtEpsilonZeroTheyAreClassicalByteByByte) {
   WorkerPool pool(2);
   uint64_t listed = 0, replayed = 0;
