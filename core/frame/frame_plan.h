@@ -23,7 +23,7 @@ inline constexpr uint32_t kLightWork = 14;   // one light: where it is and what 
 inline constexpr uint32_t kShadowWork = 28;  // one search for what is in between, whatever it meets
 inline constexpr uint32_t kTestWork = 9;     // one node or shape on the way
 inline constexpr uint32_t kPlaneWork = 35;   // places of hits on a plane
-inline constexpr uint32_t kCurveWork = 230;  // on a curved face
+inline constexpr uint32_t kCurveWork = 320;  // on a curved face
 inline constexpr uint32_t kCellWork = 36;    // one cell: found, its lanes collected
 inline constexpr uint32_t kSumWork = 20;     // one sum of diffuse light
 inline constexpr uint32_t kListWork = 12;    // one list of candidates
@@ -47,7 +47,7 @@ inline uint32_t SheetWorkOfUnknown(size_t lights) {
 
 // Of a new cell on a plane, or on a curved face, with its share of the cells above it.
 inline double WorkOfCell(size_t lights, bool curved) {
-  return curved ? 3000 + 900.0 * static_cast<double>(lights)
+  return curved ? 10000 + 1800.0 * static_cast<double>(lights)
                 : 2500 + 220.0 * static_cast<double>(lights);
 }
 
