@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/certify/curved_cell-inl.h"
+#include "core/certify/plane_nodes.h"
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
 
@@ -89,42 +90,57 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
 
 namespace {
 
-using Nodes = std::array<Rgb, 16>;
+double SumOfSizes(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 // A cell of a plane, as lights in front of it see it.
 class PlaneTerms {
  public:
-  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal)
+  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal, size_t most_lights)
       : normal_(normal),
         center_(cell.corner + (cell.eu + cell.ev) * 0.5),
         radius_(std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2),
+        reach_(SumOfSizes(center_) + radius_),
         stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)) {
-    for (size_t k = 0; k < places_.size(); ++k) {
-      places_[k] = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
-                   cell.ev * (static_cast<double>(k / 4) / 3);
+    points_.reserve(most_lights);
+    for (size_t k = 0; k < kPlaneNodes; ++k) {
+      const Vec3d place = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
+                          cell.ev * (static_cast<double>(k / 4) / 3);
+      places_.x[k] = place.x;
+      places_.y[k] = place.y;
+      places_.z[k] = place.z;
     }
   }
 
   enum class Taken { kYes, kNo, kBehind };
 
-  // Adds a light's term, if it is good enough, to the nodes and the bounds.
-  Taken Add(const Light& light, Nodes& nodes, SumBounds& bounds) const {
-    return light.kind == LightKind::kDirectional ? AddDirectional(light, nodes, bounds)
-                                                 : AddPoint(light, nodes, bounds);
+  // Adds a light's term, if it is good enough, to the bounds, and keeps it for the nodes.
+  Taken Add(const Light& light, SumBounds& bounds) {
+    return light.kind == LightKind::kDirectional ? AddDirectional(light, bounds)
+                                                 : AddPoint(light, bounds);
+  }
+  // The nodes of all terms that were taken.
+  std::array<Rgb, kPlaneNodes> Nodes() const {
+    NodeSums sums;
+    AddPointLights(places_, points_, sums);
+    std::array<Rgb, kPlaneNodes> nodes;
+    for (size_t k = 0; k < kPlaneNodes; ++k) {
+      nodes[k] = Rgb{sums.r[k], sums.g[k], sums.b[k]} + everywhere_;
+    }
+    return nodes;
   }
 
  private:
-  Taken AddDirectional(const Light& light, Nodes& nodes, SumBounds& bounds) const {
+  Taken AddDirectional(const Light& light, SumBounds& bounds) {
     const double cosine = Dot(normal_, light.to_light);
     if (!(cosine > 0)) return Taken::kBehind;
     const Rgb term = Scaled(light.irradiance, cosine);
-    for (Rgb& node : nodes) node += term;
+    everywhere_ += term;
     bounds.least += Scaled(term, 1 - kLengthMargin);
     bounds.most += term;
     return Taken::kYes;
   }
 
-  Taken AddPoint(const Light& light, Nodes& nodes, SumBounds& bounds) const {
+  Taken AddPoint(const Light& light, SumBounds& bounds) {
     const double height = Dot(light.position - center_, normal_);
     const double distance = Length(light.position - center_);
     const double least_height = kLengthMargin * (distance + radius_);
@@ -133,23 +149,22 @@ class PlaneTerms {
     if (!(height > least_height)) return Taken::kNo;
     const double nearest = std::max(height, distance - radius_) * (1 - kLengthMargin);
     const double farthest = (distance + radius_) * (1 + kLengthMargin);
-    const double noise =
-        kHeightRounding * (Length(center_) + Length(light.position) + radius_) / height;
+    const double noise = kHeightRounding * (reach_ + SumOfSizes(light.position)) / height;
     const double error = stretch_ / (81 * PowerOf(nearest, 5)) + noise / nearest;
     if (!(error * farthest <= kMaxTermSpread)) return Taken::kNo;
     const Rgb strength = Scaled(light.irradiance, height);
     bounds.error += Scaled(strength, error);
     bounds.least += Scaled(strength, 1 / farthest);
     bounds.most += Scaled(strength, 1 / nearest);
-    for (size_t k = 0; k < nodes.size(); ++k) {
-      nodes[k] += Scaled(strength, 1 / Length(light.position - places_[k]));
-    }
+    points_.push_back({light.position, strength});
     return Taken::kYes;
   }
 
   const Vec3d normal_, center_;
-  const double radius_, stretch_;
-  std::array<Vec3d, 16> places_;  // of the nodes
+  const double radius_, reach_, stretch_;
+  NodePlaces places_;
+  std::vector<NodeLight> points_;
+  Rgb everywhere_;  // of directional lights
 };
 
 // A sum of so many lights, if it is one.
@@ -169,16 +184,16 @@ std::unique_ptr<const DiffuseSum> Finished(int node_count, size_t count, const R
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell& cell,
                                                   const Vec3d& normal,
                                                   std::vector<size_t>& lights) const {
-  const PlaneTerms terms(cell, normal);
-  Nodes nodes{};
+  PlaneTerms terms(cell, normal, lights.size());
   SumBounds bounds;
   size_t count = 0;
   std::erase_if(lights, [&](size_t i) {
-    const auto taken = terms.Add(scene_.lights[i], nodes, bounds);
+    const auto taken = terms.Add(scene_.lights[i], bounds);
     count += taken == PlaneTerms::Taken::kYes ? 1 : 0;
     return taken == PlaneTerms::Taken::kNo;
   });
-  return Finished(4, count, nodes.data(), bounds);
+  if (count < static_cast<size_t>(kMinSummedLights)) return nullptr;
+  return Finished(4, count, terms.Nodes().data(), bounds);
 }
 
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const JetShape& shape, int patch,
