@@ -77,13 +77,21 @@ HWY_INLINE void SetChord(const HalfChord& half, const Floats& middle, const Floa
   SetSingleFace(c);
 }
 
+// Where the lines come nearest to a point: the parameter, and the way from the point to there.
+struct NearestPoint {
+  Floats t;
+  Vectors from;
+};
+HWY_INLINE NearestPoint NearestTo(const FloatRays& rays, const float* center) {
+  const Vectors p = rays.o - Spread(center);
+  const Floats t = -Dot(p, rays.d);
+  return {t, {MulAdd(t, rays.d.x, p.x), MulAdd(t, rays.d.y, p.y), MulAdd(t, rays.d.z, p.z)}};
+}
+
 // All of these: false when no lane may meet the shape.
 HWY_INLINE bool MeetSphere(const PacketShape& shape, const FloatRays& rays, const Mask& lanes,
                            LaneCrossings& c) {
-  const Vectors p = rays.o - Spread(shape.center);
-  const Floats middle = -Dot(p, rays.d);
-  const Vectors w = {MulAdd(middle, rays.d.x, p.x), MulAdd(middle, rays.d.y, p.y),
-                     MulAdd(middle, rays.d.z, p.z)};
+  const auto [middle, w] = NearestTo(rays, shape.center);
   const float margin = kLineMargin * (rays.size + shape.reach);
   const Floats off = Floats::All(margin * (kBallByRadius * shape.radius + kBallBySquare * margin));
   const Floats square = Floats::All(shape.radius * shape.radius) - Dot(w, w);

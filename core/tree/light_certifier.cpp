@@ -8,12 +8,6 @@
 namespace linetree {
 namespace {
 
-Box3 BoxOf(const PatchHull& hull) {
-  Box3 box;
-  for (const Vec3d& p : hull.points) box.Add(p);
-  return box;
-}
-
 double SquaredDistance(const Box3& box, const Vec3d& p) {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
@@ -75,7 +69,7 @@ bool AddContact(const Contact& contact, std::vector<Contact>& contacts) {
 struct LightCertifier::Bundle {
   Bundle(int self_object, const PatchHull& patch) : self(self_object), hull(patch) {
     std::copy(patch.points.begin(), patch.points.end(), points.begin());
-    shaft_from = BoxOf(patch);
+    for (const Vec3d& p : patch.points) shaft_from.Add(p);
   }
 
   void Aim(int light_index, const Light& source, const Box3& world) {
@@ -301,9 +295,8 @@ LightArrival LightCertifier::ArrivalOf(int object, const PatchHull& hull, int li
   for (const int32_t candidate : findings.kept) {
     const int crossings = CrossingsOfAll(bundle, candidate);
     if (crossings == 0) return arrival;
-    for (int i = 0; i < crossings; ++i) {
-      arrival.filter = arrival.filter * scene_.MaterialOf(candidate).transmit;
-    }
+    const Rgb& transmit = scene_.MaterialOf(candidate).transmit;
+    for (int i = 0; i < crossings; ++i) arrival.filter = arrival.filter * transmit;
   }
   arrival.knowledge = LightKnowledge::kOn;
   return arrival;

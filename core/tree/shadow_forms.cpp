@@ -5,11 +5,6 @@
 namespace linetree {
 namespace {
 
-// What evaluation in floats may add, relative to the sum of the coefficients' sizes: the rounding
-// of each (2^-24), of s and t (2^-25, twice in squares), of at most ten operations, and of
-// kMaxQuarterings; and half as much again.
-constexpr double kFloatRounding = 0x1p-19;
-
 // Margins below this would leave the range of floats when forms are divided by them.
 constexpr double kLeastMargin = 0x1p-400;
 constexpr double kMostForm = 0x1p100;
@@ -52,7 +47,7 @@ bool ShadowForms::IsNeeded(const Extent& extent, double margin) {
 }
 
 bool ShadowForms::IsNeeded(const Extent& extent, double bound, double& margin) {
-  margin += kFloatRounding * bound;
+  margin += kFormRounding * bound;
   // Also false for what is not a number.
   if (!(margin > kLeastMargin && bound < kMostForm * margin)) is_valid_ = false;
   return IsNeeded(extent, margin);

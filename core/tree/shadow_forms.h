@@ -54,6 +54,11 @@ Extent ExtentOf(const Quadratic& form);
 
 inline constexpr int kMaxQuarterings = 8;
 
+// What evaluation in floats may add, relative to the sum of the coefficients' sizes: the rounding
+// of each (2^-24), of s and t (2^-25, twice in squares), of at most ten operations, and of
+// kMaxQuarterings; and half as much again.
+inline constexpr double kFormRounding = 0x1p-19;
+
 // Adds the pieces of one object's shadow to `coefficients`.
 class ShadowForms {
  public:
