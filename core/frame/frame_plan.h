@@ -9,6 +9,7 @@
 // Thread safety: every method may be called from any thread.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -45,10 +46,12 @@ inline uint32_t SheetWorkOfUnknown(size_t lights) {
   return 3 * kSheetLightWork * static_cast<uint32_t>(lights) / 10;
 }
 
-// Of a new cell on a plane, or on a curved face, with its share of the cells above it.
-inline double WorkOfCell(size_t lights, bool curved) {
-  return curved ? 10000 + 1800.0 * static_cast<double>(lights)
-                : 2500 + 220.0 * static_cast<double>(lights);
+// Of a new cell on a plane, or on a curved face, with its share of the cells above it: for each
+// light the objects that may be in between are looked through, beginning with the whole scene.
+inline double WorkOfCell(size_t lights, size_t objects, bool curved) {
+  const double search = 8 * static_cast<double>(std::min<size_t>(objects, 200));
+  const double light = 150 + search + (curved ? 1000 : 0);
+  return (curved ? 6000 : 2500) + light * static_cast<double>(lights);
 }
 
 // Trees that save less than this share are left alone: counts are not that exact.

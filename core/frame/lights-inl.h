@@ -11,26 +11,27 @@
 
 #include "core/cache/surface_cache.h"
 #include "core/frame/frame_plan.h"
+#include "core/frame/groups-inl.h"
 #include "core/frame/listed-inl.h"
 #include "core/frame/sheet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
-// Lights of a Follower. `has_tiles`: its first packets are tiles of an image. `booking`: the work
+// Lights of a Follower. `is_frame`: packets of eye rays are tiles of an image. `booking`: the work
 // is counted for the plan, beside what it would be without the trees.
 class CachedLights {
  public:
   static constexpr bool kHasSheets = true;
 
   HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
-                          FramePlan& plan, bool booking, bool has_tiles, PacketWorkspace& workspace,
+                          FramePlan& plan, bool booking, bool is_frame, PacketWorkspace& workspace,
                           PacketCounts& counts)
       : scene_(scene),
         reader_(reader),
         plan_(plan),
         booking_(booking),
-        has_tiles_(has_tiles),
+        is_frame_(is_frame),
         workspace_(workspace),
         last_blockers_(workspace.LastBlockers(scene.lights().size())),
         counts_(counts),
@@ -65,66 +66,47 @@ class CachedLights {
 
   void Add(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
            const LaneMaterials& materials, LaneMask lanes, LightSum& sum) {
-    if (!booking_ && SkipsAll(hits, lanes)) {
-      SearchedLights(scene_, false, workspace_, counts_)
-          .Add(packet, hits, at, materials, lanes, sum);
-      MarkUses(packet, {lanes, 0, 0}, workspace_);
-      return;
-    }
     groups_ = 0;
     use_ = {};
     unknown_ = 0;
-    next_unknown_ = 0;
     visits_ = 0;
+    for (Floats& light : summed_) light = Floats::All(0);
     const uint32_t classical =
         booking_ ? WorkWithoutTrees(packet, hits, at, materials, lanes, sum) : 0;
-    Collect(packet, hits, lanes, materials, sum);
-    use_.listed = lanes & ~unknown_;
-    use_.searched = unknown_;
-    AddTasks(hits, at, materials, sum);
+    next_unknown_ = 0;
+    if (booking_ || !is_frame_ || !SkipsAny(hits, lanes)) {
+      Collect(packet, hits, lanes, materials);
+    } else {
+      unknown_ = lanes;
+    }
     if (booking_) Book(classical, lanes);
+    // A search costs the same for one lane and for all. But which rays share a packet is for frames
+    // to say; answers of a batch don't depend on it.
+    if (unknown_ == lanes || (unknown_ != 0 && is_frame_)) {
+      use_ = {lanes, 0, 0};
+      SearchedLights(scene_, false, workspace_, counts_)
+          .Add(packet, hits, at, materials, lanes, sum);
+    } else {
+      use_.searched |= unknown_;
+      use_.listed = lanes & ~unknown_;
+      counts_.rays.summed += static_cast<uint64_t>(std::popcount(use_.summed));
+      sum.AddRadiance(summed_, use_.summed);
+      AddTasks(hits, at, materials, sum);
+    }
     MarkUses(packet, use_, workspace_);
   }
 
  private:
-  // Lanes that lie in one cell.
-  struct Group {
-    const CellLights* known = nullptr;
-    LaneMask lanes = 0;
-    LaneMask summed = 0;  // of these: kSummed lights are done but for their highlights
-    // What is left of the tasks: those that are in no sum, and the others.
-    const LightTask *next = nullptr, *end = nullptr;
-    const LightTask *next_summed = nullptr, *end_summed = nullptr;
-
-    // Of the task that comes next; `none`: there is none.
-    HWY_INLINE size_t NextLight(size_t none) const {
-      const size_t light = next != end ? next->light : none;
-      return next_summed != end_summed ? std::min<size_t>(light, next_summed->light) : light;
-    }
-  };
   // Lanes on one face, and the work that they cost.
   struct Visit {
     int32_t object;
     LaneMask lanes;
     uint32_t work;
     bool is_sheet;  // or could be
-    bool known;     // all in cells that are built
   };
-  // What there is to do about one light.
-  struct Work {
-    LaneMask on = 0, shines = 0, search = 0, listed_lanes = 0;
-    int lists = 0;
-    struct Listed {
-      const Group* group;
-      const LightTask* task;
-    };
-    Listed listed[kPacketLanes];  // the first `lists`
-
-    HWY_INLINE Work() {}
-  };
-
+  // Finds the cells of the lanes, and leaves those that are in none in unknown_.
   void Collect(const PathPacket& packet, const PacketHits& hits, LaneMask lanes,
-               const LaneMaterials& materials, LightSum& sum) {
+               const LaneMaterials& materials) {
     const Ints objects = Ints::Load(hits.object), faces = Ints::Load(hits.face);
     // A ray inside a solid asks the solid itself too.
     unknown_ = lanes & hits.inside;
@@ -140,10 +122,9 @@ class CachedLights {
         continue;
       }
       Visit& visit = visit_[visits_++];
-      visit = {object, same, 0, MayBeSheet(packet, object, face, same), true};
+      visit = {object, same, 0, MayBeSheet(packet, object, face, same)};
       const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
       if (tree == nullptr) {
-        visit.known = false;
         visit.work = (visit.is_sheet ? 0 : kPlaneWork) + WorkIn(nullptr, visit.is_sheet);
         unknown_ |= same;
         continue;
@@ -155,12 +136,12 @@ class CachedLights {
       // A grazing ray's normal may be turned inwards by rounding.
       const LaneMask placed = places_.on & (tree->chart().IsThin() ? kAllLanes : places_.outward);
       unknown_ |= same & ~placed;
-      CollectCells(*tree, hits, placed, materials, sum);
+      CollectCells(*tree, hits, placed, materials);
     }
   }
 
   void CollectCells(const SurfaceTree& tree, const PacketHits& hits, LaneMask lanes,
-                    const LaneMaterials& materials, LightSum& sum) {
+                    const LaneMaterials& materials) {
     for (LaneMask left = lanes; left != 0;) {
       OpenCells::Entry& entry = cells_.Find(tree, places_, std::countr_zero(left));
       const SurfaceNode& node = *entry.node;
@@ -170,7 +151,6 @@ class CachedLights {
       if (booking_) {
         Visit& visit = visit_[visits_ - 1];
         visit.work += WorkIn(node.payload.get(), visit.is_sheet);
-        visit.known = visit.known && node.payload != nullptr;
       }
       if (node.payload == nullptr) {
         unknown_ |= same;
@@ -183,7 +163,8 @@ class CachedLights {
         unknown_ |= same & ~clear;
         same &= clear;
       }
-      if (same != 0) Open(node, same, tree.chart().IsThin(), materials, sum);
+      if (same != 0 && (unknown_ == 0 || !is_frame_))
+        Open(node, same, tree.chart().IsThin(), materials);
     }
   }
 
@@ -201,9 +182,8 @@ class CachedLights {
     return BitsOf(OfFloats(patch & index(places_.i, cell.i) & index(places_.j, cell.j)));
   }
 
-  void Open(const SurfaceNode& node, LaneMask lanes, bool thin, const LaneMaterials& materials,
-            LightSum& sum) {
-    Group& group = group_[groups_++];
+  void Open(const SurfaceNode& node, LaneMask lanes, bool thin, const LaneMaterials& materials) {
+    CellGroup& group = group_[groups_++];
     const CellLights& known = *node.payload;
     const LightTask* tasks = known.tasks.data();
     const LightTask *rest = tasks + known.rest_of_tasks, *end = tasks + known.tasks.size();
@@ -218,24 +198,25 @@ class CachedLights {
     const Floats s = local(places_.u, node.cell.i, s_), t = local(places_.v, node.cell.j, t_);
     if (!(reader_.epsilon() > 0)) return;
     const LaneMask outside = thin ? lanes & places_.outward : lanes;
-    AddSum(group, 0, outside, s, t, materials, sum);
-    AddSum(group, 1, lanes & ~outside, s, t, materials, sum);
+    AddSum(group, 0, outside, s, t, materials);
+    AddSum(group, 1, lanes & ~outside, s, t, materials);
     if (group.summed == lanes && (lanes & materials.shines) == 0) {
       group.next_summed = group.end_summed;
     }
   }
 
-  HWY_INLINE void AddSum(Group& group, size_t side, LaneMask lanes, const Floats& s,
-                         const Floats& t, const LaneMaterials& materials, LightSum& sum) {
+  HWY_INLINE void AddSum(CellGroup& group, size_t side, LaneMask lanes, const Floats& s,
+                         const Floats& t, const LaneMaterials& materials) {
     const DiffuseSum* diffuse = group.known->sums[side].get();
     if (lanes == 0 || diffuse == nullptr || !(diffuse->spread <= reader_.epsilon())) return;
     Floats light[3];
     SumAt(*diffuse, s, t, light);
-    for (size_t c = 0; c < 3; ++c) light[c] = light[c] * materials.diffuse[c];
-    sum.AddRadiance(light, lanes);
+    const Mask which = MaskOf(lanes);
+    for (size_t c = 0; c < 3; ++c) {
+      summed_[c] = Select(which, light[c] * materials.diffuse[c], summed_[c]);
+    }
     group.summed |= lanes;
     use_.summed |= lanes;
-    counts_.rays.summed += static_cast<uint64_t>(std::popcount(lanes));
   }
 
   // Light by light, in order, as the classical tracer sums them.
@@ -246,7 +227,7 @@ class CachedLights {
       size_t light = unknown_ != 0 ? next_unknown_ : count;
       for (int g = 0; g < groups_; ++g) light = std::min(light, group_[g].NextLight(count));
       if (light >= count) return;
-      Work work;
+      LightWork work;
       if (unknown_ != 0) {
         work.search = unknown_;
         next_unknown_ = light + 1;
@@ -256,7 +237,8 @@ class CachedLights {
     }
   }
 
-  HWY_INLINE void Take(size_t light, Group& group, const LaneMaterials& materials, Work& work) {
+  HWY_INLINE void Take(size_t light, CellGroup& group, const LaneMaterials& materials,
+                       LightWork& work) {
     if (group.next != group.end && group.next->light == light) {
       Take(group, *group.next++, materials, work);
     } else if (group.next_summed != group.end_summed && group.next_summed->light == light) {
@@ -264,8 +246,8 @@ class CachedLights {
     }
   }
 
-  HWY_INLINE void Take(const Group& group, const LightTask& task, const LaneMaterials& materials,
-                       Work& work) {
+  HWY_INLINE void Take(const CellGroup& group, const LightTask& task,
+                       const LaneMaterials& materials, LightWork& work) {
     switch (task.kind) {
       case LightTask::Kind::kOn:
         work.on |= group.lanes;
@@ -285,7 +267,7 @@ class CachedLights {
     }
   }
 
-  HWY_INLINE void AddLight(size_t light, const Work& work, const PacketHits& hits,
+  HWY_INLINE void AddLight(size_t light, const LightWork& work, const PacketHits& hits,
                            const HitPoints& at, LightSum& sum) {
     const LaneMask asked = work.on | work.shines | work.search | work.listed_lanes;
     if (asked == 0) return;
@@ -313,11 +295,14 @@ class CachedLights {
     sum.Add(light, seen, shadow, work.shines);
   }
 
-  HWY_INLINE bool SkipsAll(const PacketHits& hits, LaneMask lanes) const {
+  HWY_INLINE bool SkipsAny(const PacketHits& hits, LaneMask lanes) const {
+    int32_t last = kNoObject;
     for (LaneMask left = lanes; left != 0; left &= left - 1) {
-      if (!plan_.Skips(static_cast<size_t>(hits.object[std::countr_zero(left)]))) return false;
+      const int32_t object = hits.object[std::countr_zero(left)];
+      if (object != last && plan_.Skips(static_cast<size_t>(object))) return true;
+      last = object;
     }
-    return true;
+    return false;
   }
 
   // Whether these lanes of a packet, when it is not booked, may be evaluated as a sheet.
@@ -325,7 +310,7 @@ class CachedLights {
                              LaneMask lanes) const {
     const auto material = static_cast<size_t>(scene_.material_of()[static_cast<size_t>(object)]);
     const PacketMaterials& table = scene_.materials();
-    return has_tiles_ && packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
+    return is_frame_ && packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
            table.spawns[material] == 0 && table.shines[material] == 0 &&
            scene_.IsFlat(object, face);
   }
@@ -362,19 +347,25 @@ class CachedLights {
 
   void Book(uint32_t classical, LaneMask lanes) {
     const auto all = static_cast<uint32_t>(std::popcount(lanes));
+    int skipped = 0;
+    for (int i = 0; i < visits_; ++i) skipped += Skips(visit_[i]) ? 1 : 0;
     for (int i = 0; i < visits_; ++i) {
-      const auto own = static_cast<uint32_t>(std::popcount(visit_[i].lanes));
       const Visit& visit = visit_[i];
-      plan_.Book(static_cast<size_t>(visit.object), own, visit.work, classical * own / all,
-                 visit.known);
+      const auto own = static_cast<uint32_t>(std::popcount(visit.lanes));
+      const uint32_t without = classical * own / all;
+      // Who shares a packet with lanes that are searched for saves nothing.
+      const bool is_alone = skipped == (Skips(visit) ? 1 : 0);
+      plan_.Book(static_cast<size_t>(visit.object), own,
+                 is_alone ? visit.work : std::max(visit.work, without), without, unknown_ == 0);
     }
   }
+  bool Skips(const Visit& visit) const { return plan_.Skips(static_cast<size_t>(visit.object)); }
 
   const PacketScene& scene_;
   const SurfaceCache::Reader& reader_;
   FramePlan& plan_;
   const bool booking_;
-  const bool has_tiles_;
+  const bool is_frame_;
   PacketWorkspace& workspace_;
   int32_t* const last_blockers_;
   PacketCounts& counts_;
@@ -387,10 +378,11 @@ class CachedLights {
   VisibleFace asked_face_;                                         // whether it
   bool has_sheet_ = false;                                         // is a sheet
   alignas(64) float s_[kPacketLanes] = {}, t_[kPacketLanes] = {};  // within the lanes' cells
-  Group group_[kPacketLanes];
+  CellGroup group_[kPacketLanes];
   int groups_ = 0;
-  LaneMask unknown_ = 0;  // lanes in no cell
-  size_t next_unknown_ = 0;
+  LaneMask unknown_ = 0;     // lanes in no cell
+  size_t next_unknown_ = 0;  // light for which these are searched
+  Floats summed_[3];         // light of sums
   LaneUses use_;
 };
 

@@ -12,7 +12,7 @@ double PriceOf(const Scene& scene, size_t object) {
   const Shape& shape = scene.objects[object].shape;
   const bool curved =
       std::holds_alternative<SphereShape>(shape) || std::holds_alternative<FrustumShape>(shape);
-  return WorkOfCell(scene.lights.size(), curved);
+  return WorkOfCell(scene.lights.size(), scene.objects.size(), curved);
 }
 
 }  // namespace
