@@ -292,13 +292,6 @@ uint64_t PathCache::CellCount() const {
   return cells;
 }
 
-uint64_t PathCache::IndexBytes() const {
-  std::shared_lock lock(mutex_);
-  uint64_t bytes = 0;
-  for (const auto& forest : forests_) bytes += forest->store.index_bytes();
-  return bytes;
-}
-
 std::vector<std::array<uint64_t, kVerdictCount>> PathCache::CellVerdicts() const {
   std::shared_lock lock(mutex_);
   std::vector<std::array<uint64_t, kVerdictCount>> verdicts(branches_.size());

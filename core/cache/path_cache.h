@@ -95,8 +95,6 @@ class PathCache {
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
-  // Beside ByteSize, in no budget: the tables of trees by object.
-  uint64_t IndexBytes() const;
   // Cells by verdict, for every object of the scene.
   std::vector<std::array<uint64_t, kVerdictCount>> CellVerdicts() const;
   void Clear();

@@ -164,11 +164,6 @@ std::vector<TreeSize> SurfaceCache::TreeSizes() const {
   return store_.TreeSizes();
 }
 
-uint64_t SurfaceCache::IndexBytes() const {
-  std::shared_lock lock(mutex_);
-  return store_.index_bytes();
-}
-
 uint64_t SurfaceCache::TreeCount() const {
   std::shared_lock lock(mutex_);
   uint64_t count = 0;

@@ -74,8 +74,6 @@ class SurfaceCache {
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
-  // Beside ByteSize, in no budget: the table of trees by object.
-  uint64_t IndexBytes() const;
   uint64_t TreeCount() const;
   std::vector<TreeSize> TreeSizes() const;  // by object
   void Clear();

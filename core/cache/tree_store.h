@@ -114,7 +114,7 @@ class TreeStore {
 
   // By object; counted anew.
   std::vector<TreeSize> TreeSizes() const {
-    std::vector<TreeSize> sizes(trees_.size());
+    std::vector<TreeSize> sizes(scene_.objects.size());
     ForEachTree([&](size_t object, Tree& tree) {
       sizes[object].bytes = tree.CountBytes();
       tree.cells().ForEach([&](Node& node) { sizes[object].cells += node.payload ? 1 : 0; });
@@ -123,10 +123,6 @@ class TreeStore {
   }
 
   uint64_t byte_size() const { return byte_size_; }
-  // The store itself, which is there whatever it holds and is in no budget.
-  uint64_t index_bytes() const {
-    return trees_.capacity() * sizeof(trees_[0]) + wanted_.capacity() * sizeof(wanted_[0]);
-  }
   uint64_t cell_count() const { return cells_; }
   uint64_t CountBytes() const {
     uint64_t bytes = IndexBytes();

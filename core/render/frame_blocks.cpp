@@ -25,7 +25,8 @@ static_assert(kTilesOfBlock == 64);
 // Cells that promise to save less than this share of the frame's work can wait for its end.
 constexpr double kLeastPromise = 0.1;
 constexpr uint32_t kOftenDecided = 3;
-constexpr size_t kProbedBlocks = 4;  // then one in so many blocks is
+// Then one in so many blocks is: where trees pay, and where none does.
+constexpr size_t kProbedBlocks = 4, kIdleBlocks = 16;
 constexpr size_t kMostProbed = 256;  // there is no need for more
 
 // Blocks that one parallel loop handles: enough to hide its cost, few enough to stop soon.
@@ -118,7 +119,8 @@ class Blocks {
   // In one of so many blocks a tile is booked.
   size_t ProbedBlocks(uint32_t turn) const {
     const size_t often = std::max<size_t>(1, BlockCount() / kMostProbed);
-    return turn < kOftenDecided ? often : kProbedBlocks * often;
+    if (turn < kOftenDecided) return often;
+    return (plan_.SkipsAll() ? kIdleBlocks : kProbedBlocks) * often;
   }
 
   const PacketTracer& packets_;

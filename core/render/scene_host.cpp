@@ -152,7 +152,6 @@ std::vector<MemoryPart> SceneHost::Memory() const {
   return {{"paper's linetrees", cache_.ByteSize(), cache_.CellCount(), true},
           {"linetrees", paths_.ByteSize(), paths_.CellCount(), true},
           {"surface trees", surfaces_.ByteSize(), surfaces_.CellCount(), true},
-          {"tables of trees", surfaces_.IndexBytes() + paths_.IndexBytes()},
           {"planner", plan_.ByteSize()},
           {"packets", packet_bytes_}};
 }

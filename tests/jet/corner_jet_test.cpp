@@ -3,6 +3,7 @@
 
 #include "core/jet/jet_functions-inl.h"
 #include "tests/jet/jet_check.h"
+#include "tests/support/sanitizer_share.h"
 
 namespace linetree::test {
 namespace {
@@ -17,7 +18,7 @@ struct Dimension {
 using Dimensions = testing::Types<Dimension<2>, Dimension<4>>;
 TYPED_TEST_SUITE(CornerJetTest, Dimensions);
 
-constexpr int kRounds = 100;
+constexpr int kRounds = 100 / kSanitizerShare;
 
 // fn(random, box, polynomials a and b of the given size).
 template <size_t D, class Fn>

@@ -92,7 +92,6 @@ TEST_F(SceneHostTest, MemoryIsReportedByPart) {
   EXPECT_EQ(budgeted, host_.CacheBytes());
   EXPECT_GT(bytes_of("surface trees"), 0u);
   EXPECT_GT(bytes_of("planner"), 0u);
-  EXPECT_GT(bytes_of("tables of trees"), 0u);
 }
 
 TEST_F(SceneHostTest, ExplainsEveryObject) {
@@ -103,7 +102,7 @@ TEST_F(SceneHostTest, ExplainsEveryObject) {
   ASSERT_TRUE(frame.ok());
   EXPECT_GT(frame->stages.probe_ms, 0);
   const SceneHost::Explanation explanation = host_.Explain(0.1);
-  EXPECT_EQ(explanation.decisions, 1u);
+  EXPECT_GE(explanation.decisions, 1u);
   ASSERT_EQ(explanation.objects.size(), host_.scene().objects.size());
   uint32_t points = 0;
   for (const ObjectPlan& object : explanation.objects) points += object.points;
