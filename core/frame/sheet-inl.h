@@ -24,10 +24,10 @@ namespace linetree::HWY_NAMESPACE {
 // face at t = -E.z / V.z.
 //
 // With n = 2^-53, V is off by 8 n |row| (1 + |a R| + |b U|), row by row, E by 8 n |row| (|eye| +
-// |centre|), and with them t and the place. The classical tracer's own place is as far off. Cells
-// know what they say up to the chart's tolerance around them, and the places in a cell may be off
-// by kMostOff of its side (the sums' kNodeRounding allows for it). Blocks and cells for which that
-// is not certain are left to others.
+// reach), for the tracer may measure from any point of the object, and with them t and the place.
+// The classical tracer's own place is as far off. Cells know what they say up to the chart's
+// tolerance around them, and the places in a cell may be off by kMostOff of its side (the sums'
+// kNodeRounding allows for it). Blocks and cells for which that is not certain are left to others.
 class Sheet {
  public:
   static constexpr double kMostOff = 0x1p-26;
@@ -39,7 +39,8 @@ class Sheet {
   HWY_NOINLINE bool Open(const SurfaceTree& tree, const VisibleFace& face, const EyeRays& eye_rays,
                          const SquareBounds& block) {
     const FaceForm& form = tree.FormOf(face.face());
-    if (form.kind != FaceForm::Kind::kPlane || face.IsInside()) return false;
+    // Flat triangles whose normals turn lie on a plane, too.
+    if (!scene_.IsFlat(face.object, face.face()) || face.IsInside()) return false;
     const auto material =
         static_cast<size_t>(scene_.material_of()[static_cast<size_t>(face.object)]);
     const PacketMaterials& table = scene_.materials();
@@ -62,6 +63,8 @@ class Sheet {
     side_ = e_[2] > 0 ? 0 : 1;
     center_ = form.center;
     normal_ = side_ == 0 ? form.row[2] : -form.row[2];
+    // Of which the slack is a multiple.
+    reach_ = tree.chart().Slack() / kSurfaceSlack;
     return (side_ == 0 || tree.chart().IsThin()) && BoundErrors(form, eye_rays, block);
   }
 
@@ -118,7 +121,7 @@ class Sheet {
 
   HWY_INLINE bool BoundErrors(const FaceForm& form, const EyeRays& eye_rays,
                               const SquareBounds& block) {
-    const double reach = Length(eye_rays.eye()) + Length(form.center);
+    const double reach = Length(eye_rays.eye()) + reach_;
     const double width = 1 + block.FarthestAcross() * Length(eye_rays.right()) +
                          block.FarthestUp() * Length(eye_rays.up());
     const auto v_off = [&](size_t k) { return 8 * kUnit * Length(form.row[k]) * width; };
@@ -244,7 +247,7 @@ class Sheet {
     } else {
       const Vec3d way = from.position - center_;
       const double height = linetree::Dot(normal_, way);
-      const double off = 4 * kUnit * (Length(from.position) + Length(center_)) + world_off_;
+      const double off = 4 * kUnit * (Length(from.position) + reach_) + world_off_;
       if (!(std::abs(height) > 0x1p24 * off)) return false;
       if (height < 0) return true;
       NeedPoint(tile);
@@ -275,6 +278,7 @@ class Sheet {
   const EyeRays* eye_rays_ = nullptr;
   double off_ = 0;        // of places, in [0, 1] over the chart
   double world_off_ = 0;  // of points
+  double reach_ = 0;      // of the object: see SurfaceChart::Slack
   float across_square_ = 0, up_square_ = 0;
 };
 

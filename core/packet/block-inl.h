@@ -287,6 +287,7 @@ class BlockRenderer {
       if (!lights_.EvaluateSheet(packet_, grid_.Across(column), grid_.Up(row), radiance, depth)) {
         return false;
       }
+      counts_.on_sheets += static_cast<uint64_t>(std::popcount(place.lanes));
       float* sums = workspace_.radiance() + first;
       for (int c = 0; c < 3; ++c) radiance[c].Store(sums + c * kBlockPixels);
       StoreFirstHit(face.object, depth, place, task_.stride, task_.target);

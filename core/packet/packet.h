@@ -107,6 +107,7 @@ struct PacketCounts {
   RayCounts rays;               // as the scalar tracer counts
   uint64_t packets = 0;         // searched for hits
   uint64_t seen = 0;            // eye rays that were not searched for: see sight-inl.h
+  uint64_t on_sheets = 0;       // eye rays whose hits were not computed: Lights::EvaluateSheet
   uint64_t hits_again = 0;      // rays whose hit was decided again in double
   uint64_t shadow_packets = 0;  // one for every light and packet with a lane that faces it
   uint64_t shadow_tests = 0;    // of nodes and shapes, by those
@@ -117,6 +118,7 @@ struct PacketCounts {
     rays += o.rays;
     packets += o.packets;
     seen += o.seen;
+    on_sheets += o.on_sheets;
     hits_again += o.hits_again;
     shadow_packets += o.shadow_packets;
     shadow_tests += o.shadow_tests;

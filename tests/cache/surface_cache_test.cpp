@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <vector>
+
 #include "tests/support/demo_scenes.h"
 
 namespace linetree {
@@ -145,6 +149,72 @@ TEST_F(SurfaceCacheTest, ACancelledRefinementKeepsWhatItBuilt) {
   EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
   Use(cache, 1, 500);
   EXPECT_GT(cache.Refine(100, kSerial), 2u);
+}
+
+// Spheres cost more than planes.
+double PriceOf(size_t object) { return object < 2 ? 7 : 30; }
+
+TEST_F(SurfaceCacheTest, WorkStaysWithinItsBudget) {
+  const std::function<double(size_t)> price = PriceOf;
+  double largest = 0;
+  for (const double budget : {0.0, 6.9, 7.0, 50.0, 400.0, 3000.0}) {
+    for (const double weight : {0.01, 100.0}) {
+      SurfaceCache cache(tracer_, 10'000'000);
+      for (uint64_t round = 0; round < 6; ++round) {
+        Use(cache, round, 500);
+        const std::vector<TreeSize> before = cache.TreeSizes();
+        SurfaceCache::Thrift thrift;
+        thrift.price = &price;
+        thrift.most_work = budget;
+        const uint64_t certified = cache.Refine(weight, kSerial, thrift);
+        const std::vector<TreeSize> after = cache.TreeSizes();
+        double work = 0;
+        uint64_t cells = 0;
+        for (size_t object = 0; object < after.size(); ++object) {
+          const uint64_t old = object < before.size() ? before[object].cells : 0;
+          work += static_cast<double>(after[object].cells - old) * PriceOf(object);
+          cells += after[object].cells - old;
+        }
+        ASSERT_LE(work, budget) << "round " << round << ", weight " << weight;
+        ASSERT_EQ(cells, certified);
+        largest = std::max(largest, budget > 0 ? work / budget : 0);
+      }
+    }
+  }
+  EXPECT_GT(largest, 0.9) << "divisions spend what there is";
+}
+
+TEST_F(SurfaceCacheTest, TheBudgetGoesToTheCellsThatMostPointsAskFor) {
+  const std::function<double(size_t)> price = [](size_t) { return 1.0; };
+  SurfaceCache cache(tracer_, 10'000'000);
+  Use(cache, 1, 500);
+  cache.Refine(1, kSerial);
+  // By far the most hits are on the floor, which is one cell.
+  Use(cache, 1, 500);
+  SurfaceCache::Thrift thrift;
+  thrift.price = &price;
+  thrift.most_work = 1;
+  EXPECT_EQ(cache.Refine(100, kSerial, thrift), 1u);
+  EXPECT_EQ(cache.TreeSizes()[0].cells, 1u);
+}
+
+TEST_F(SurfaceCacheTest, WithoutAPriceOrALimitThereIsNoBudget) {
+  const std::function<double(size_t)> price = PriceOf;
+  SurfaceCache::Thrift free, unlimited;
+  free.most_work = 0;
+  unlimited.price = &price;
+  SurfaceCache plain(tracer_, 10'000'000),
+      caches[2] = {{tracer_, 10'000'000}, {tracer_, 10'000'000}};
+  for (uint64_t round = 0; round < 4; ++round) {
+    Use(plain, round, 500);
+    const uint64_t certified = plain.Refine(100, kSerial);
+    EXPECT_EQ(certified > 0, round > 0);
+    for (SurfaceCache& cache : caches) {
+      Use(cache, round, 500);
+      EXPECT_EQ(cache.Refine(100, kSerial, &cache == &caches[0] ? free : unlimited), certified);
+    }
+  }
+  EXPECT_GT(plain.CellCount(), 100u) << "divisions among them";
 }
 
 }  // namespace

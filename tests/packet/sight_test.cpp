@@ -76,6 +76,25 @@ TEST(Sight, OfEveryShapeAlone) {
   }
 }
 
+// Seen from above, a frustum's lateral face surrounds its cap, or the hole in its place, which may
+// be too small to lie on any of the rays that are looked at.
+TEST(Sight, OfFacesWithAHoleInTheMiddle) {
+  Totals totals;
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    Random random(seed);
+    Scene scene = RandomScene(random, 1, 1);
+    scene.objects.clear();
+    const double top = random.LogUniform(0.01, 0.3);
+    AddObject(scene, Frustum({0, 0, 0}, {0, 0, random.Uniform(0.3, 2)}, 1, top, seed % 2 == 0), 0);
+    Camera camera;
+    camera.eye = random.InBox({-0.3, -0.3, 3}, {0.3, 0.3, 6});
+    camera.look_at = random.InBox({-0.3, -0.3, 0}, {0.3, 0.3, 0});
+    camera.up = {0, 1, 0};
+    camera.fov_deg = random.Uniform(5, 40);
+    ASSERT_TRUE(Compare(scene, camera, 75, 61, totals)) << "seed " << seed;
+  }
+}
+
 TEST(Sight, OfRandomScenes) {
   Totals totals;
   for (uint64_t seed = 0; seed < 80; ++seed) {
