@@ -100,6 +100,7 @@ class PlaneTerms {
         center_(cell.corner + (cell.eu + cell.ev) * 0.5),
         radius_(std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2),
         reach_(SumOfSizes(center_) + radius_),
+        slip_(2 * cell.pad),
         stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)) {
     points_.reserve(most_lights);
     for (size_t k = 0; k < kPlaneNodes; ++k) {
@@ -143,13 +144,13 @@ class PlaneTerms {
   Taken AddPoint(const Light& light, SumBounds& bounds) {
     const double height = Dot(light.position - center_, normal_);
     const double distance = Length(light.position - center_);
-    const double least_height = kLengthMargin * (distance + radius_);
+    const double least_height = std::max(slip_, kLengthMargin * (distance + radius_));
     if (height <= -least_height) return Taken::kBehind;
     // Of a light in the plane itself rounding says which side it is on.
     if (!(height > least_height)) return Taken::kNo;
     const double nearest = std::max(height, distance - radius_) * (1 - kLengthMargin);
     const double farthest = (distance + radius_) * (1 + kLengthMargin);
-    const double noise = kHeightRounding * (reach_ + SumOfSizes(light.position)) / height;
+    const double noise = (kHeightRounding * (reach_ + SumOfSizes(light.position)) + slip_) / height;
     const double error = stretch_ / (81 * PowerOf(nearest, 5)) + noise / nearest;
     if (!(error * farthest <= kMaxTermSpread)) return Taken::kNo;
     const Rgb strength = Scaled(light.irradiance, height);
@@ -161,7 +162,11 @@ class PlaneTerms {
   }
 
   const Vec3d normal_, center_;
-  const double radius_, reach_, stretch_;
+  const double radius_, reach_;
+  // What a hit's distance from the cell's own point, cell.pad at most, does to the height of a
+  // light and to how far away it is, which is no nearer than that height.
+  const double slip_;
+  const double stretch_;
   NodePlaces places_;
   std::vector<NodeLight> points_;
   Rgb everywhere_;  // of directional lights

@@ -131,7 +131,8 @@ class SurfaceChart {
   std::optional<PlanarCell> PlanarCellOf(int patch, const SurfaceCell& cell) const;
 
   // Whether the outside of a solid or frustum faces away from the light all over the hull of a cell
-  // of the patch, up to rounding. Never for planar shapes, which have two outsides.
+  // of the patch: on flat patches for every hit that is on the surface (IsOn), on curved ones up to
+  // rounding. Never for planar shapes, which have two outsides.
   bool FacesAway(int patch, const PatchHull& hull, const Light& light) const;
 
   // Whether a facing normal belongs to the side of a planar shape that its own normal does not
