@@ -37,9 +37,11 @@ inline double PacketRadianceRounding(double largest_exponent) {
 
 // Where the pixels of an image are traced to, row by row; any pointer may be null but `radiance`.
 struct PixelTarget {
-  float* radiance = nullptr;     // 3 per pixel
-  int32_t* object = nullptr;     // kNoObject for the background
-  float* depth = nullptr;        // distance along the eye ray; infinity for the background
+  float* radiance = nullptr;  // 3 per pixel
+  int32_t* object = nullptr;  // kNoObject for the background
+  // Distance along the eye ray, infinity for the background. Of tiles whose hits were not computed
+  // (frames above epsilon 0) within 2^-20 of it.
+  float* depth = nullptr;
   uint64_t* topology = nullptr;  // digests of the ray trees, see TopologyDigest
 };
 

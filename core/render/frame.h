@@ -59,7 +59,9 @@ struct Frame {
   std::vector<int32_t> object;  // index of the object seen, -1 for the background
   std::vector<Source> source;
   std::vector<Verdict> verdict;
-  std::vector<float> depth;  // distance from the eye; infinity for the background
+  // Distance from the eye, infinity for the background; by packets above epsilon 0 within 2^-20 of
+  // it.
+  std::vector<float> depth;
   Camera camera;
   double max_relative_error = 0;
   // What arithmetic in float may add to that (PacketRadianceRounding); 0 for frames in double.
