@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -192,14 +193,20 @@ TEST(RayBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
   double largest = 0;
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const auto scene = RandomScene(seed);
+    SceneHost plain(scene);
+    std::array<std::vector<Ray>, 2> rays;
+    std::array<RayBatch, 2> scalar;
+    for (size_t turn = 0; turn < rays.size(); ++turn) {
+      rays[turn] = RandomRays(10 * seed + turn, 6007);
+      scalar[turn] = Scalar(plain, rays[turn], pool);
+    }
     for (const RayOrder order : {RayOrder::kAsGiven, RayOrder::kBinned}) {
       SceneHost host(scene, AlwaysAsk());
       for (const double epsilon : {0.25, 0.02, 1e-7}) {
-        for (uint64_t turn = 0; turn < 2; ++turn) {
-          const std::vector<Ray> rays = RandomRays(10 * seed + turn, 6007);
-          const RayBatch cached = Answers(host, rays, Options(Mode::kCached, epsilon, order), pool);
-          const RayBatch scalar = Scalar(host, rays, pool);
-          const double error = LargestError(cached, scalar, RadianceFloor(*scene));
+        for (size_t turn = 0; turn < rays.size(); ++turn) {
+          const RayBatch cached =
+              Answers(host, rays[turn], Options(Mode::kCached, epsilon, order), pool);
+          const double error = LargestError(cached, scalar[turn], RadianceFloor(*scene));
           EXPECT_LE(error, epsilon + cached.lane_rounding) << "scene " << seed;
           largest = std::max(largest, error);
           interpolated += cached.stats.interpolated;

@@ -186,7 +186,9 @@ TEST(SheetsTest, LightsAllButInTheFacesPlane) {
   }
   std::printf("largest error %.3f of what is allowed\n", totals.largest);
   // Few are: the first of them come late.
-  if (test::kSanitizerShare == 1) EXPECT_GT(totals.on_sheets, 0u);
+  if (test::kSanitizerShare == 1) {
+    EXPECT_GT(totals.on_sheets, 0u);
+  }
 }
 
 }  // namespace
