@@ -6,12 +6,15 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
 #include "core/render/grow_trees.h"
+#include "core/render/sample_blocks.h"
+#include "core/render/sample_mean.h"
 #include "core/render/tile_sources.h"
 
 namespace linetree {
@@ -81,12 +84,18 @@ class Blocks {
         progress_(progress),
         frame_(frame),
         across_((frame.width + kBlockSide - 1) / kBlockSide),
-        down_((frame.height + kBlockSide - 1) / kBlockSide) {}
+        down_((frame.height + kBlockSide - 1) / kBlockSide) {
+    if (!frame.sampling.IsPlain()) samples_.emplace(frame.sampling);
+  }
 
   bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
 
   void RenderClassical() {
-    RenderWave(0, 1, Wave::kClassical, [](size_t) { return kAllTiles; });
+    if (samples_) {
+      RenderSamples(0, 1, Wave::kClassical);
+    } else {
+      RenderWave(0, 1, Wave::kClassical, [](size_t) { return kAllTiles; });
+    }
   }
 
   void RenderCached();
@@ -111,8 +120,17 @@ class Blocks {
   double SumError() const { return options_.max_relative_error - packets_.radiance_rounding(); }
 
   template <class Fn>
-  void ForBlocks(double from, double to, Fn&& body);
+  void ForBlocks(double from, double to, RayCounts& rays, Fn&& body);
   void RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of);
+  void RenderSamples(double from, double to, Wave wave);
+  void RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts, OnceBlock& once,
+                  UseCounts& uses);
+  void RenderTask(const BlockTask& task, Wave wave, PacketWorkspace& workspace,
+                  PacketCounts& counts);
+  // Where no tree pays there is nothing to look up.
+  Wave PaidFor(Wave wave) const {
+    return wave == Wave::kCached && plan_.SkipsAll() ? Wave::kClassical : wave;
+  }
   uint64_t Grow(const Growth& growth);
   FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
   void RenderSquares(size_t side, double speculation, std::vector<uint64_t>& done);
@@ -133,13 +151,16 @@ class Blocks {
   const Progress& progress_;
   Frame& frame_;
   const int across_, down_;
+  // Of frames with several to a pixel. Their trees learn from rays through the pixels' centres,
+  // which are no part of the picture.
+  std::optional<PixelSamples> samples_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<PacketWorkspace>> idle_;  // guarded by mutex_
 };
 
 // body(block, workspace, counts) for all blocks; reports progress from one share to the other.
 template <class Fn>
-void Blocks::ForBlocks(double from, double to, Fn&& body) {
+void Blocks::ForBlocks(double from, double to, RayCounts& rays, Fn&& body) {
   const size_t count = BlockCount();
   for (size_t begin = 0; begin < count && !IsCancelled(); begin += kSliceBlocks) {
     std::vector<PacketCounts> counts(std::min(kSliceBlocks, count - begin));
@@ -161,34 +182,75 @@ void Blocks::ForBlocks(double from, double to, Fn&& body) {
           idle_.push_back(std::move(workspace));
         },
         &frame_.stats.cpu_ms);
-    for (const PacketCounts& c : counts) frame_.stats.base += c.rays;
+    for (const PacketCounts& c : counts) rays += c.rays;
     const double done = static_cast<double>(begin + counts.size()) / static_cast<double>(count);
     if (progress_) progress_(from + (to - from) * done);
   }
 }
 
+void Blocks::RenderTask(const BlockTask& task, Wave wave, PacketWorkspace& workspace,
+                        PacketCounts& counts) {
+  if (wave == Wave::kClassical) {
+    RenderBlockWide(packets_.scene(), task, workspace, counts);
+    return;
+  }
+  const SurfaceCache::Reader reader(surfaces_, SumError());
+  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, wave == Wave::kBooked, workspace,
+                       counts);
+}
+
 void Blocks::RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of) {
-  // Where no tree pays there is nothing to look up.
-  if (wave == Wave::kCached && plan_.SkipsAll()) wave = Wave::kClassical;
+  wave = PaidFor(wave);
   const bool asked = wave != Wave::kClassical;
   std::vector<UseCounts> uses(BlockCount());
-  ForBlocks(from, to, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+  RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
+  ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
     const uint64_t tiles = tiles_of(block);
     if (tiles == 0) return;
     const PixelTarget target = Target();
     const PacketTracer::Region region = RegionOf(block);
     const BlockTask task = {
         eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
-    if (asked) {
-      const SurfaceCache::Reader reader(surfaces_, SumError());
-      RenderFrameBlockWide(packets_.scene(), task, reader, plan_, wave == Wave::kBooked, workspace,
-                           counts);
-    } else {
-      RenderBlockWide(packets_.scene(), task, workspace, counts);
-    }
+    RenderTask(task, wave, workspace, counts);
     StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
   });
+  if (samples_) return;
   for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
+}
+
+void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts,
+                        OnceBlock& once, UseCounts& uses) {
+  const PacketTracer::Region region = RegionOf(block);
+  const PixelTarget target = Target();
+  const ShownSample shown(*samples_);
+  const OnceTask task = {eye_rays_, region, Stride(), target, *samples_, shown.column, shown.row};
+  const SurfaceCache::Reader reader(surfaces_, SumError());
+  RenderOnceWide(packets_.scene(), task, reader, plan_, workspace, counts, once);
+  const auto each = static_cast<uint64_t>(samples_->count());
+  StoreOnce(region, once.done, workspace.uses(), each, frame_, uses);
+}
+
+void Blocks::RenderSamples(double from, double to, Wave wave) {
+  wave = PaidFor(wave);
+  const EyeRays eye_rays = eye_rays_.Divided(samples_->across(), samples_->down());
+  const SampledFrame sampled = {
+      *samples_, eye_rays, options_.limits, packets_.sees_squares(), wave != Wave::kClassical,
+      frame_};
+  // At epsilon 0 every sample is evaluated.
+  const bool evaluates_once = sampled.asked && SumError() > 0;
+  std::vector<UseCounts> uses(BlockCount());
+  const auto body = [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+    const auto render = [&](const BlockTask& task) {
+      RenderTask(task, wave, workspace, counts);
+      return workspace.uses();
+    };
+    OnceBlock once;
+    if (evaluates_once) RenderOnce(block, workspace, counts, once, uses[block]);
+    RenderSampledBlock(sampled, RegionOf(block), render, evaluates_once ? &once : nullptr,
+                       uses[block]);
+  };
+  ForBlocks(from, to, frame_.stats.base, body);
+  for (const UseCounts& counts : uses) AddSources(counts, sampled.asked, frame_.stats);
 }
 
 uint64_t Blocks::Grow(const Growth& growth) {
@@ -218,9 +280,10 @@ void Blocks::RenderCached() {
     return (block + turn) % probed == 0 ? FirstTile(block) : 0;
   };
   const FramePlan::Booked first = Probe(0, 0.05, first_tile);
-  const auto share = static_cast<double>(kTilesOfBlock * probed);
+  const double each = samples_ ? samples_->count() : 1;
+  const double share = each * static_cast<double>(kTilesOfBlock * probed);
   const double work =
-      kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
+      each * kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
   const double speculation = std::min(kSpeculation * work, share * first.promised / 2);
   const uint64_t cells = Grow({share, kSureHorizon, speculation});
   std::vector<uint64_t> done(BlockCount());
@@ -231,7 +294,11 @@ void Blocks::RenderCached() {
   if ((cells > 0 || planted) && promising && plan_.WantsAny()) {
     for (const size_t side : kSquareSides) RenderSquares(side, speculation, done);
   }
-  RenderWave(0.5, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~done[block]; });
+  if (samples_) {
+    RenderSamples(0.5, 1, Wave::kCached);
+  } else {
+    RenderWave(0.5, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~done[block]; });
+  }
   Grow({1, kLearningHorizon, kLearningShare * work});
 }
 
@@ -252,11 +319,12 @@ void Blocks::RenderSquares(size_t side, double speculation, std::vector<uint64_t
   RenderWave(progress / 2, progress, Wave::kCached,
              [&](size_t block) { return SquareOf(block, side) & ~corner(block) & ~done[block]; });
   for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, side);
-  const double left = static_cast<double>(kTilesOfBlock * probed) * (1 - progress);
+  const double each = samples_ ? samples_->count() : 1;
+  const double left = each * static_cast<double>(kTilesOfBlock * probed) * (1 - progress);
   // Before anything has been built there is nothing to measure.
   const double earned = kReinvested * left * booked.saved;
   const double budget = side == kSquareSides[0] ? std::max(earned, speculation) : earned;
-  Grow({1 / progress, kSureHorizon, std::max(budget, 0.0)});
+  Grow({each / progress, kSureHorizon, std::max(budget, 0.0)});
 }
 
 }  // namespace
