@@ -13,9 +13,11 @@ namespace linetree {
 
 struct ServerLimits {
   // Sizes of pictures, which are smaller than what `--local` takes: the server holds many at a
-  // time. 2^25 pixels hold an 8K picture (7680 x 4320).
-  RenderLimits render{
-      .max_side = 16384, .max_pixels = uint64_t{1} << 25, .max_rays = uint64_t{1} << 20};
+  // time. 2^25 pixels hold an 8K picture (7680 x 4320); 2^29 samples are 16 for each of them.
+  RenderLimits render{.max_side = 16384,
+                      .max_pixels = uint64_t{1} << 25,
+                      .max_samples = uint64_t{1} << 29,
+                      .max_rays = uint64_t{1} << 20};
 
   // What gRPC accepts at all: above a batch of 10^7 rays of 62 bytes, so that such a batch is
   // refused by a message that says `rays`.

@@ -42,7 +42,8 @@ bool AllHold(const Rows& rows) {
 
 std::string SettingText(const BenchSpeedFlags& flags) {
   const FrameSpeedOptions& options = flags.plan.base.options;
-  return absl::StrCat(options.width, " x ", options.height, ", epsilon ", options.epsilon, ", ",
+  return absl::StrCat(options.width, " x ", options.height, ", ", options.sampling.samples,
+                      " sample(s) a pixel, epsilon ", options.epsilon, ", ",
                       flags.plan.base.threads, " thread(s), median of ", options.repeats);
 }
 
@@ -185,9 +186,10 @@ std::map<std::string, Enum> ByName(const std::array<std::string_view, N>& names)
 
 void AddSweepFlags(CLI::App& app, BenchSpeedFlags& flags) {
   CLI::Option* sweep =
-      app.add_option("--sweep", flags.sweeps,
-                     "Over lights, objects, depth, resolution, epsilon or threads, in place of one "
-                     "setting; may be given again")
+      app.add_option(
+             "--sweep", flags.sweeps,
+             "Over lights, objects, depth, resolution, epsilon, threads or samples, in place "
+             "of one setting; may be given again")
           ->transform(CLI::CheckedTransformer(ByName<kSweepNames.size(), Sweep>(kSweepNames)))
           ->type_name("WHAT")
           ->allow_extra_args(false);
@@ -253,6 +255,7 @@ void AddMeasureFlags(CLI::App& app, BenchSpeedFlags& flags) {
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   AddLimitsFlags(app, base.options.limits);
+  AddSamplingFlags(app, base.options.sampling);
   app.add_option("--repeat", base.options.repeats,
                  "Times that each frame is taken; the median counts")
       ->type_name("N")

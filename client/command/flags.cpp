@@ -183,6 +183,29 @@ void AddOptionsFlags(CLI::App& app, RenderOptions& options) {
   AddLanesFlag(app, options.lanes);
 }
 
+void AddSamplingFlags(CLI::App& app, Sampling& sampling) {
+  const std::map<std::string, SamplePattern> patterns = {{"regular", SamplePattern::kRegular},
+                                                         {"jittered", SamplePattern::kJittered}};
+  app.add_option(
+         "--samples", sampling.samples,
+         "Eye rays of each pixel, which shows their mean; squares (4, 9, 16, …) are fastest")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxPixelSamples))
+      ->capture_default_str()
+      ->group("Rendering");
+  app.add_option("--sampling", sampling.pattern,
+                 "regular: through the centres of equal squares, or on a lattice;\n"
+                 "jittered: anywhere in each sample's part of the pixel")
+      ->transform(CLI::CheckedTransformer(patterns))
+      ->type_name("PATTERN")
+      ->default_str("regular")
+      ->group("Rendering");
+  app.add_option("--sample-seed", sampling.seed, "Of jittered samples")
+      ->type_name("SEED")
+      ->capture_default_str()
+      ->group("Rendering");
+}
+
 void AddStatsFlag(CLI::App& app, std::string& stats) {
   app.add_option("--stats", stats, "Write the counters as JSON")
       ->type_name("FILE")

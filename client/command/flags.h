@@ -53,6 +53,9 @@ void AddJudgeFlag(CLI::App& app, JudgeKind& judge);
 void AddLanesFlag(CLI::App& app, Lanes& lanes);
 void AddLimitsFlags(CLI::App& app, PathLimits& limits);
 
+// --samples, --sampling and --sample-seed.
+void AddSamplingFlags(CLI::App& app, Sampling& sampling);
+
 // -o, --layer and --stats.
 struct OutputFlags {
   std::vector<std::string> pictures;  // .exr or .png

@@ -20,6 +20,7 @@ struct FlyFlags {
   SceneFlags scene;
   SizeFlags size;
   RenderOptions options;
+  Sampling sampling;
   OutputFlags output;
   bool explain = false;
   std::string path;
@@ -34,7 +35,8 @@ absl::StatusOr<std::vector<FrameRequest>> RequestsOf(const FlyFlags& flags) {
   if (!cameras.ok()) return cameras.status();
   std::vector<FrameRequest> requests;
   for (const Camera& camera : *cameras) {
-    requests.push_back({camera, flags.size.width, flags.size.height, flags.options});
+    requests.push_back(
+        {camera, flags.size.width, flags.size.height, flags.options, flags.sampling});
   }
   return requests;
 }
@@ -105,6 +107,7 @@ void AddFly(CLI::App& parent, Commands& commands) {
       ->group("View");
   AddSizeFlags(*app, flags->size);
   AddOptionsFlags(*app, flags->options);
+  AddSamplingFlags(*app, flags->sampling);
   AddOutputFlags(*app, flags->output);
   AddExplainFlag(*app, flags->explain);
   app->footer(

@@ -33,6 +33,7 @@ FrameReport::FrameReport(std::string scene, const RenderOptions& options, std::o
 void FrameReport::Add(const Frame& frame) {
   const FrameStats& stats = frame.stats;
   scene_version_ = frame.scene_version;
+  sampling_ = frame.sampling;
   frames_.push_back(StatsJson(stats, frame.width, frame.height));
   if (out_ == nullptr) return;
   *out_ << table_.RowLine({absl::StrCat(frames_.size()), absl::StrFormat("%.1f", stats.wall_ms),
@@ -52,6 +53,7 @@ nlohmann::json FrameReport::ToJson() const {
   json["scene_version"] = scene_version_;
   json["mode"] = options_.mode == Mode::kCached ? "cached" : "classical";
   json["epsilon"] = options_.max_relative_error;
+  json["samples"] = sampling_.samples;
   return json;
 }
 

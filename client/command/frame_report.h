@@ -29,6 +29,7 @@ class FrameReport {
   std::ostream* const out_;
   const Table table_;
   std::string scene_version_;
+  Sampling sampling_;  // of the last frame
   nlohmann::json frames_ = nlohmann::json::array();
 };
 

@@ -29,6 +29,7 @@ struct LoadFlags {
   SceneFlags scene;
   SizeFlags size{256, 256};
   RenderOptions options;
+  Sampling sampling;
   std::string path;
   int clients = 4;
   int frames = 0;  // of each client; 0: as many as the path has, or no bound with a duration
@@ -79,7 +80,8 @@ class LoadTest {
       const Camera& camera = cameras_[(offset + static_cast<size_t>(frame)) % cameras_.size()];
       LoadSample sample{.start_s = Now()};
       const absl::StatusOr<Frame> answer = client.RenderFrame(
-          scene_, {camera, flags_.size.width, flags_.size.height, flags_.options}, "", false, {});
+          scene_, {camera, flags_.size.width, flags_.size.height, flags_.options, flags_.sampling},
+          "", false, {});
       sample.end_s = Now();
       const std::lock_guard lock(mutex_);
       if (!answer.ok()) {
@@ -182,6 +184,7 @@ void AddFlags(CLI::App& app, LoadFlags& flags) {
       ->group("View");
   AddSizeFlags(app, flags.size);
   AddOptionsFlags(app, flags.options);
+  AddSamplingFlags(app, flags.sampling);
   app.add_option("--clients", flags.clients, "Clients at the same time")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxClients))

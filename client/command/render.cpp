@@ -20,6 +20,7 @@ struct RenderFlags {
   ViewFlags view;
   SizeFlags size;
   RenderOptions options;
+  Sampling sampling;
   OutputFlags output;
   bool explain = false;
   int frames = 1;
@@ -43,7 +44,8 @@ absl::StatusOr<int> Render(const RenderFlags& flags) {
   if (!session.ok()) return session.status();
   const absl::StatusOr<Camera> camera = ResolveCamera(session->scene, flags.view);
   if (!camera.ok()) return camera.status();
-  const FrameRequest request{*camera, flags.size.width, flags.size.height, flags.options};
+  const FrameRequest request{*camera, flags.size.width, flags.size.height, flags.options,
+                             flags.sampling};
 
   FrameReport report(session->scene.name(), flags.options,
                      flags.output.quiet ? nullptr : &std::cout);
@@ -81,6 +83,7 @@ void AddRender(CLI::App& parent, Commands& commands) {
   AddViewFlags(*app, flags->view);
   AddSizeFlags(*app, flags->size);
   AddOptionsFlags(*app, flags->options);
+  AddSamplingFlags(*app, flags->sampling);
   app->add_option("--frames", flags->frames,
                   "Render the view so many times; the last frame is written, all are counted")
       ->type_name("N")
@@ -95,6 +98,8 @@ void AddRender(CLI::App& parent, Commands& commands) {
       "  linetree render --scene room --epsilon 0.05 --frames 2 --stats room.json\n"
       "  linetree render --scene room --layer verdict -o why.png\n"
       "  linetree render --local --scene scenes/room.textproto --lanes simd --frames 3 --explain\n"
+      "  linetree render --local --scene scenes/room.textproto --lanes simd --samples 16 -o "
+      "fine.png\n"
       "  linetree render --scene room --eye 0,1,6 --look-at 0,1,0 --fov 60 -o view.png\n\n",
       LegendText()));
   commands.push_back({app, [flags] { return Render(*flags); }});

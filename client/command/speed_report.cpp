@@ -96,8 +96,6 @@ std::string_view NameOf(SpeedTarget::What what) {
       return "of every single frame";
     case SpeedTarget::What::kThreads:
       return "one thread / two";
-    case SpeedTarget::What::kSamples:
-      return "16 samples a pixel";
   }
   return "";
 }
@@ -227,6 +225,7 @@ std::string TargetTable(const std::vector<TargetResult>& results) {
                {"pixels"},
                {"depth", Align::kRight},
                {"epsilon", Align::kRight},
+               {"samples", Align::kRight},
                {"path"},
                {"what"},
                {"to reach", Align::kRight},
@@ -237,12 +236,10 @@ std::string TargetTable(const std::vector<TargetResult>& results) {
   for (const TargetResult& result : results) {
     const SpeedTarget& t = result.target;
     table.AddRow({t.scene, absl::StrCat(t.width, " x ", t.height), absl::StrCat(t.max_depth),
-                  absl::StrCat(t.epsilon), NameOf(t.path), std::string(NameOf(t.what)),
-                  Hundredths(t.goal), result.measured ? Hundredths(*result.measured) : "-",
-                  !result.measured ? "not measured"
-                  : result.IsMet() ? "yes"
-                                   : "no",
-                  absl::StrFormat("%.2g", result.largest_error), Grouped(result.beyond)});
+                  absl::StrCat(t.epsilon), absl::StrCat(t.samples), NameOf(t.path),
+                  std::string(NameOf(t.what)), Hundredths(t.goal), Hundredths(result.measured),
+                  result.IsMet() ? "yes" : "no", absl::StrFormat("%.2g", result.largest_error),
+                  Grouped(result.beyond)});
   }
   return table.ToString();
 }
@@ -271,6 +268,7 @@ nlohmann::json SpeedJson(const SpeedRow& row) {
                {"repeats", options.repeats},
                {"epsilon", options.epsilon},
                {"threads", row.setting.threads},
+               {"samples", options.sampling.samples},
                {"max_depth", options.limits.max_depth},
                {"min_weight", options.limits.min_weight}});
   json["paths"] = nlohmann::json::array();
@@ -281,26 +279,21 @@ nlohmann::json SpeedJson(const SpeedRow& row) {
 
 nlohmann::json TargetJson(const TargetResult& result) {
   const SpeedTarget& t = result.target;
-  nlohmann::json json = {{"scene", t.scene},
-                         {"width", t.width},
-                         {"height", t.height},
-                         {"max_depth", t.max_depth},
-                         {"epsilon", t.epsilon},
-                         {"path", NameOf(t.path)},
-                         {"what", std::string(NameOf(t.what))},
-                         {"goal", t.goal},
-                         {"measured", nullptr},
-                         {"met", result.IsMet()},
-                         {"largest_error", result.largest_error},
+  nlohmann::json json = {{"scene", t.scene},       {"width", t.width},
+                         {"height", t.height},     {"max_depth", t.max_depth},
+                         {"epsilon", t.epsilon},   {"samples", t.samples},
+                         {"path", NameOf(t.path)}, {"what", std::string(NameOf(t.what))},
+                         {"goal", t.goal},         {"measured", result.measured},
+                         {"met", result.IsMet()},  {"largest_error", result.largest_error},
                          {"beyond", result.beyond}};
-  if (result.measured) json["measured"] = *result.measured;
   return json;
 }
 
 std::vector<Plot> SweepPlots(Sweep sweep, const std::vector<SpeedRow>& rows) {
   const std::string name(linetree::NameOf(sweep));
   PlotAxis x{.label = name};
-  x.logarithmic = sweep != Sweep::kEpsilon && sweep != Sweep::kDepth && sweep != Sweep::kThreads;
+  x.logarithmic = sweep != Sweep::kEpsilon && sweep != Sweep::kDepth && sweep != Sweep::kThreads &&
+                  sweep != Sweep::kSamples;
   std::vector<PlotSeries> times = SeriesOf(rows, [](auto& p) { return p.cached.median; });
   for (PlotSeries& series : ClassicalSeries(rows)) times.push_back(std::move(series));
   return {{"classical / cached over " + name,

@@ -71,13 +71,14 @@ class FrameRace {
     request.width = options_.width;
     request.height = options_.height;
     request.options.limits = options_.limits;
+    request.sampling = options_.sampling;
     request.options.lanes = Lanes::kSimd;
     request.options.max_relative_error = options_.epsilon;
     request.options.mode = mode;
     return host.RenderFrame(request, pool_);
   }
   static double NsPerPixel(const Frame& frame) {
-    return 1e6 * frame.stats.wall_ms / static_cast<double>(frame.stats.pixels);
+    return 1e6 * frame.stats.wall_ms / static_cast<double>(frame.object.size());
   }
 
   const std::shared_ptr<const Scene> scene_;

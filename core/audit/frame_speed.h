@@ -18,6 +18,7 @@ struct FrameSpeedOptions {
   int repeats = 5;  // of which the median counts, each on a cache that starts empty
   double epsilon = 0.02;
   PathLimits limits;
+  Sampling sampling{};
 };
 
 struct FrameSpeed {

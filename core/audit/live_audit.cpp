@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/audit/comparison.h"
 #include "core/audit/sampling.h"
+#include "core/render/sample_mean.h"
 
 namespace linetree {
 namespace {
@@ -61,6 +62,7 @@ void LiveAudit::OfferSamples(Request request, size_t answers, const SampleAt& sa
   for (; index < answers; index = indices.Next()) {
     Sample sample = sample_at(index);
     sample.request = shared;
+    sample.index = index;
     if (waiting_.TryPush(sample)) {
       queued_.fetch_add(1, std::memory_order_relaxed);
       pushed = true;
@@ -82,13 +84,15 @@ void LiveAudit::Offer(const LiveScene& scene, const std::vector<Ray>& rays,
 void LiveAudit::Offer(const LiveScene& scene, const RenderOptions& options, const Frame& frame) {
   const EyeRays eye_rays(frame.camera, frame.width, frame.height);
   const auto width = static_cast<size_t>(frame.width);
-  OfferSamples({scene, options, /*from_frame=*/true, frame.lane_rounding}, frame.source.size(),
-               [&](size_t i) {
-                 const Ray ray = eye_rays.ThroughPixel(static_cast<int>(i % width),
-                                                       static_cast<int>(i / width));
-                 const float* radiance = &frame.radiance[3 * i];
-                 return Sample{nullptr, ray, {radiance[0], radiance[1], radiance[2]}};
-               });
+  Request request = {scene, options, /*from_frame=*/true, frame.lane_rounding};
+  if (!frame.sampling.IsPlain()) {
+    request.sampled = {frame.camera, frame.width, frame.height, frame.sampling};
+  }
+  OfferSamples(std::move(request), frame.source.size(), [&](size_t i) {
+    const Ray ray = eye_rays.ThroughPixel(static_cast<int>(i % width), static_cast<int>(i / width));
+    const float* radiance = &frame.radiance[3 * i];
+    return Sample{nullptr, ray, {radiance[0], radiance[1], radiance[2]}};
+  });
 }
 
 void LiveAudit::Run() {
@@ -104,13 +108,29 @@ void LiveAudit::Run() {
   }
 }
 
+Rgb LiveAudit::ClassicalOf(const Sample& sample) {
+  const Request& request = *sample.request;
+  const auto trace = [&](const Ray& ray) {
+    RayCounts none;
+    return request.scene.host->tracer().Radiance(ray.origin, ray.direction, request.options.limits,
+                                                 none);
+  };
+  if (!request.sampled) return trace(request.from_frame ? sample.ray : *UnitRay(sample.ray, 0));
+  const auto& [camera, width, height, sampling] = *request.sampled;
+  const PixelSamples samples(sampling);
+  const EyeRays eye_rays = EyeRays(camera, width, height).Divided(samples.across(), samples.down());
+  const auto columns = static_cast<size_t>(width);
+  const int left = static_cast<int>(sample.index % columns) * samples.across();
+  const int top = static_cast<int>(sample.index / columns) * samples.down();
+  return MeanOfSamples(samples, [&](int column, int row) {
+    return trace(samples.RayOf(eye_rays, left + column, top + row));
+  });
+}
+
 void LiveAudit::Check(const Sample& sample) {
   const Request& request = *sample.request;
   const Scene& scene = request.scene.host->scene();
-  const Ray ray = request.from_frame ? sample.ray : *UnitRay(sample.ray, 0);
-  RayCounts none;
-  const Rgb classical = request.scene.host->tracer().Radiance(ray.origin, ray.direction,
-                                                              request.options.limits, none);
+  const Rgb classical = ClassicalOf(sample);
   const double epsilon = request.options.max_relative_error, floor = RadianceFloor(scene);
   const bool rounded = request.from_frame || request.lane_rounding > 0;
   const Comparison result =
@@ -123,13 +143,18 @@ void LiveAudit::Check(const Sample& sample) {
   counts.checked_.fetch_add(1, std::memory_order_relaxed);
   if (result.IsViolation()) {
     counts.violations_.fetch_add(1, std::memory_order_release);
-    on_violation_({.scene = absl::StrCat(request.scene.name, " ", scene.version),
-                   .ray = sample.ray,
-                   .options = request.options,
-                   .from_frame = request.from_frame,
-                   .answer = sample.answer,
-                   .classical = classical,
-                   .error_over_allowed = result.error_over_allowed});
+    on_violation_(
+        {.scene = absl::StrCat(request.scene.name, " ", scene.version),
+         .ray = sample.ray,
+         .options = request.options,
+         .from_frame = request.from_frame,
+         .pixel = request.sampled
+                      ? PixelText(request.sampled->camera, request.sampled->width,
+                                  request.sampled->height, request.sampled->sampling, sample.index)
+                      : "",
+         .answer = sample.answer,
+         .classical = classical,
+         .error_over_allowed = result.error_over_allowed});
   }
   done_.fetch_add(1, std::memory_order_release);
   done_.notify_all();

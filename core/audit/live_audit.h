@@ -77,23 +77,32 @@ class LiveAudit {
   void WaitUntilChecked();
 
  private:
+  // A frame whose pixels have several rays.
+  struct Sampled {
+    Camera camera;
+    int width, height;
+    Sampling sampling;
+  };
   // What the samples of one request have in common.
   struct Request {
     LiveScene scene;
     RenderOptions options;
     bool from_frame = false;
     double lane_rounding = 0;  // of the Frame or RayBatch
+    std::optional<Sampled> sampled{};
   };
   struct Sample {
     std::shared_ptr<const Request> request;
     Ray ray;
     Rgb answer;
+    size_t index = 0;  // of the request's answers
   };
 
   template <class SampleAt>
   void OfferSamples(Request request, size_t answers, const SampleAt& sample_at);
   void Run();
   void Check(const Sample& sample);
+  static Rgb ClassicalOf(const Sample& sample);
   void WakeUp();
 
   const LiveAuditOptions options_;

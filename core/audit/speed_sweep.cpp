@@ -26,6 +26,8 @@ Range RangeOf(Sweep sweep) {
       return {0, 1};
     case Sweep::kThreads:
       return {1, 256};
+    case Sweep::kSamples:
+      return {1, kMaxPixelSamples};
   }
   return {};
 }
@@ -46,6 +48,8 @@ std::vector<double> DefaultPoints(Sweep sweep) {
       return {0, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5};
     case Sweep::kThreads:
       return {1, 2};
+    case Sweep::kSamples:
+      return {1, 4, 9, 16};
   }
   return {};
 }
@@ -61,6 +65,7 @@ std::vector<std::string> DefaultMadeScenes(Sweep sweep) {
     case Sweep::kResolution:
     case Sweep::kEpsilon:
     case Sweep::kThreads:
+    case Sweep::kSamples:
       return {"room:18:16", "spheres:200:4"};
   }
   return {};
@@ -106,6 +111,9 @@ absl::StatusOr<SpeedSetting> SettingAt(Sweep sweep, double point, const SpeedSou
       break;
     case Sweep::kThreads:
       setting.threads = whole;
+      break;
+    case Sweep::kSamples:
+      setting.options.sampling.samples = whole;
       break;
   }
   if (made && (sweep == Sweep::kLights || sweep == Sweep::kObjects)) {

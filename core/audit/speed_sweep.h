@@ -18,9 +18,10 @@ enum class Sweep {
   kResolution,  // pixels a side of a square picture; 2880 x 2880 are as many as 3840 x 2160
   kEpsilon,
   kThreads,
+  kSamples,  // of every pixel
 };
-inline constexpr std::array<std::string_view, 6> kSweepNames = {"lights",     "objects", "depth",
-                                                                "resolution", "epsilon", "threads"};
+inline constexpr std::array<std::string_view, 7> kSweepNames = {
+    "lights", "objects", "depth", "resolution", "epsilon", "threads", "samples"};
 
 inline std::string_view NameOf(Sweep sweep) { return kSweepNames[static_cast<size_t>(sweep)]; }
 

@@ -79,8 +79,7 @@ bool WantsThreads(const std::vector<SpeedTarget>& targets) {
 
 bool SpeedTarget::SharesRunWith(const SpeedTarget& other) const {
   return scene == other.scene && width == other.width && height == other.height &&
-         max_depth == other.max_depth && epsilon == other.epsilon &&
-         (what == What::kSamples) == (other.what == What::kSamples);
+         max_depth == other.max_depth && epsilon == other.epsilon && samples == other.samples;
 }
 
 std::vector<SpeedTarget> SpeedTargets() {
@@ -106,7 +105,7 @@ std::vector<SpeedTarget> SpeedTargets() {
   list.Add({.scene = "room:18:3", .epsilon = 0, .goal = 2.3});
   list.Add({.scene = "room:18:16", .epsilon = 0, .goal = 5});
   list.Add({.scene = "room:18:64", .epsilon = 0, .goal = 8});
-  list.Add({.scene = "room:18:16", .what = What::kSamples, .goal = 8});
+  list.Add({.scene = "room:18:16", .samples = 16, .goal = 8});
   list.AddNeverSlower("spheres:10000:4", 512, 512);
   for (const char* scene : {"spheres:10000:4", "room:18:16", "spheres:200:4", "spd/mount_6.nff"}) {
     list.Add(
@@ -120,11 +119,6 @@ absl::StatusOr<std::vector<TargetResult>> MeasureTargets(
     const SpeedFlights& flights, const std::function<void(double)>& progress) {
   LT_CHECK(!targets.empty());
   const SpeedTarget& first = targets.front();
-  std::vector<TargetResult> results;
-  if (first.what == What::kSamples) {
-    for (const SpeedTarget& target : targets) results.push_back({target, std::nullopt});
-    return results;
-  }
   SpeedSetting setting;
   setting.name = first.scene;
   setting.scene = std::move(scene);
@@ -133,6 +127,7 @@ absl::StatusOr<std::vector<TargetResult>> MeasureTargets(
   setting.options.repeats = repeats;
   setting.options.epsilon = first.epsilon;
   setting.options.limits.max_depth = first.max_depth;
+  setting.options.sampling.samples = first.samples;
   SpeedFlights wanted = flights;
   wanted.paths = PathsOf(targets);
   const auto speeds = StudyPaths(setting, wanted, progress);
@@ -143,6 +138,7 @@ absl::StatusOr<std::vector<TargetResult>> MeasureTargets(
     if (!measured.ok()) return measured.status();
     threads = *measured;
   }
+  std::vector<TargetResult> results;
   for (const SpeedTarget& target : targets) results.push_back(ResultOf(target, *speeds, threads));
   return results;
 }

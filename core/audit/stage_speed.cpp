@@ -64,11 +64,12 @@ class StageRace {
     request.options.lanes = Lanes::kSimd;
     request.options.max_relative_error = options_.epsilon;
     request.options.limits = options_.limits;
+    request.sampling = options_.sampling;
     if (depth > 0) request.options.limits.max_depth = depth;
     const auto frame = host.RenderFrame(request, pool_);
     if (!frame.ok()) return frame.status();
     if (all == nullptr) return absl::OkStatus();
-    const double ns = 1e6 / static_cast<double>(frame->stats.pixels);
+    const double ns = 1e6 / static_cast<double>(frame->object.size());
     all->push_back(ns * frame->stats.wall_ms);
     if (learning != nullptr) {
       learning->probe.push_back(ns * frame->stages.probe_ms);

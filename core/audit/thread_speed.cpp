@@ -11,6 +11,7 @@ absl::StatusOr<ThreadSpeed> StudyThreads(std::shared_ptr<const Scene> scene,
   request.options.lanes = Lanes::kSimd;
   request.options.limits = options.limits;
   request.options.max_relative_error = options.epsilon;
+  request.sampling = options.sampling;
   std::vector<double> ratios;
   FrameSpeed difference;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {

@@ -13,6 +13,9 @@ struct Violation {
   Ray ray;            // as it was asked
   RenderOptions options;
   bool from_frame = false;  // the answer was rounded to float
+  // Where the answer is the mean of several rays: which (PixelText), and `ray` leads to the pixel's
+  // centre.
+  std::string pixel{};
   Rgb answer;
   Rgb classical;
   double error_over_allowed = 0;
@@ -21,6 +24,10 @@ struct Violation {
 // One line of `key=value`; coordinates and radiances as hexadecimal floats, so that nothing is
 // lost.
 std::string ToLine(const Violation& violation);
+
+// One pixel of a frame with several samples, with everything that its rays depend on.
+std::string PixelText(const Camera& camera, int width, int height, const Sampling& sampling,
+                      size_t pixel);
 
 // "0x1p+0,-0x1.8p-1,0x0p+0"
 std::string HexText(const Vec3d& v);

@@ -31,6 +31,7 @@
 #include "hwy/highway.h"
 #if HWY_TARGET != HWY_SCALAR
 #include "core/frame/lights-inl.h"
+#include "core/frame/once-inl.h"
 #include "core/packet/block-inl.h"
 #include "core/packet/rays-inl.h"
 #endif
@@ -41,6 +42,8 @@ namespace linetree::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 void RenderFrameBlock(const PacketScene&, const BlockTask&, const SurfaceCache::Reader&, FramePlan&,
                       Asking, PacketWorkspace&, PacketCounts&) {}
+void RenderOnce(const PacketScene&, const OnceTask&, const SurfaceCache::Reader&, const FramePlan&,
+                PacketWorkspace&, PacketCounts&, OnceBlock&) {}
 void TraceCachedRays(const PacketScene&, const RayTask&, uint64_t, const SurfaceCache::Reader&,
                      FramePlan&, Asking, PacketWorkspace&, PacketCounts&) {}
 #else
@@ -49,6 +52,11 @@ void RenderFrameBlock(const PacketScene& scene, const BlockTask& task,
                       PacketWorkspace& workspace, PacketCounts& counts) {
   CachedLights lights(scene, reader, plan, asking, true, workspace, counts);
   BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render();
+}
+void RenderOnce(const PacketScene& scene, const OnceTask& task, const SurfaceCache::Reader& reader,
+                const FramePlan& plan, PacketWorkspace& workspace, PacketCounts& counts,
+                OnceBlock& block) {
+  OnceRenderer(scene, task, reader, plan, workspace, counts, block).Render();
 }
 void TraceCachedRays(const PacketScene& scene, const RayTask& task, uint64_t packets,
                      const SurfaceCache::Reader& reader, FramePlan& plan, Asking asking,
@@ -65,6 +73,7 @@ HWY_AFTER_NAMESPACE();
 namespace linetree {
 
 HWY_EXPORT(RenderFrameBlock);
+HWY_EXPORT(RenderOnce);
 HWY_EXPORT(TraceCachedRays);
 
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
@@ -72,6 +81,11 @@ void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
   (scene, task, lights, plan, asking, workspace, counts);
+}
+void RenderOnceWide(const PacketScene& scene, const OnceTask& task,
+                    const SurfaceCache::Reader& lights, const FramePlan& plan,
+                    PacketWorkspace& workspace, PacketCounts& counts, OnceBlock& block) {
+  HWY_DYNAMIC_DISPATCH(RenderOnce)(scene, task, lights, plan, workspace, counts, block);
 }
 void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
                          const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,

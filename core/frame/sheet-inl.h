@@ -19,9 +19,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
-// Pixels of a block on one face. In the face's chart (the rows of its FaceForm; the centre is 0
-// and the face z = 0) the ray through the pixel (a, b) is E + t V, V = F + a R + b U; it meets the
-// face at t = -E.z / V.z.
+// Pixels of a block on one face, one ray each (PixelSheet: several). In the face's chart (the rows
+// of its FaceForm; the centre is 0 and the face z = 0) the ray through the pixel (a, b) is E + t V,
+// V = F + a R + b U; it meets the face at t = -E.z / V.z.
 //
 // With n = 2^-53, V is off by 8 n |row| (1 + |a R| + |b U|), row by row, E by 8 n |row| (|eye| +
 // reach), for the tracer may measure from any point of the object, and with them t and the place.
@@ -93,15 +93,18 @@ class Sheet {
       left &= ~same;
       entry.uses += static_cast<uint32_t>(std::popcount(same));
     }
-    const Floats a = Demoted(across), b = Demoted(up);
-    const Floats square = MulAdd(a * a, Floats::All(across_square_),
-                                 MulAdd(b * b, Floats::All(up_square_), Floats::All(1)));
-    depth = Demoted(t) * Sqrt(square);
+    depth = DepthOf(across, up, t);
     uses.listed = lanes;
     return true;
   }
 
- private:
+  // Along the rays through these places.
+  HWY_INLINE Floats DepthAt(const Doubles& across, const Doubles& up) const {
+    const Doubles z = Doubles::All(f_[2]) + Doubles::All(r_[2]) * across + Doubles::All(u_[2]) * up;
+    return DepthOf(across, up, Doubles::All(-e_[2]) / z);
+  }
+
+ protected:
   static constexpr double kUnit = 0x1p-53;
 
   struct Tile {
@@ -114,6 +117,13 @@ class Sheet {
                     const Doubles& x_of, const Doubles& y_of)
         : across(across_of), up(up_of), t(t_of), x(x_of), y(y_of) {}
   };
+
+  HWY_INLINE Floats DepthOf(const Doubles& across, const Doubles& up, const Doubles& t) const {
+    const Floats a = Demoted(across), b = Demoted(up);
+    const Floats square = MulAdd(a * a, Floats::All(across_square_),
+                                 MulAdd(b * b, Floats::All(up_square_), Floats::All(1)));
+    return Demoted(t) * Sqrt(square);
+  }
 
   HWY_INLINE double V(size_t k, double across, double up) const {
     return f_[k] + across * r_[k] + up * u_[k];

@@ -108,6 +108,29 @@ absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& mes
   return options;
 }
 
+v1::Sampling SamplingToWire(const Sampling& sampling) {
+  v1::Sampling message;
+  message.set_samples(static_cast<uint32_t>(sampling.samples));
+  message.set_pattern(sampling.pattern == SamplePattern::kJittered ? v1::SAMPLES_JITTERED
+                                                                   : v1::SAMPLES_REGULAR);
+  message.set_seed(sampling.seed);
+  return message;
+}
+
+absl::StatusOr<Sampling> SamplingFromWire(const v1::Sampling& message, absl::string_view path) {
+  auto status = CheckEnum(v1::SamplePattern_IsValid(message.pattern()), path, "sampling.pattern",
+                          message.pattern());
+  if (!status.ok()) return status;
+  Sampling sampling;
+  constexpr uint32_t kLargest = std::numeric_limits<int>::max();
+  if (message.samples() > 0) {
+    sampling.samples = static_cast<int>(std::min(message.samples(), kLargest));
+  }
+  if (message.pattern() == v1::SAMPLES_JITTERED) sampling.pattern = SamplePattern::kJittered;
+  sampling.seed = message.seed();
+  return sampling;
+}
+
 v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameRequest& request,
                                           const std::string& camera_name, bool all_layers) {
   v1::RenderFrameRequest message;
@@ -121,6 +144,7 @@ v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameR
   message.set_height(static_cast<uint32_t>(request.height));
   *message.mutable_options() = RenderOptionsToWire(request.options);
   message.set_all_layers(all_layers);
+  *message.mutable_sampling() = SamplingToWire(request.sampling);
   return message;
 }
 
@@ -150,6 +174,11 @@ absl::StatusOr<FrameRequest> FrameRequestFromWire(const v1::RenderFrameRequest& 
   auto options = RenderOptionsFromWire(message.options(), defaults, path);
   if (!options.ok()) return options.status();
   request.options = *options;
+  auto sampling = SamplingFromWire(message.sampling(), path);
+  if (!sampling.ok()) return sampling.status();
+  request.sampling = *sampling;
+  status = ValidateSamples(request.sampling, request.width, request.height, limits);
+  if (!status.ok()) return Prefixed(path, status);
   return request;
 }
 

@@ -33,6 +33,10 @@ absl::StatusOr<RenderOptions> RenderOptionsFromWire(const v1::RenderOptions& mes
                                                     const RenderOptions& defaults,
                                                     absl::string_view path);
 
+v1::Sampling SamplingToWire(const Sampling& sampling);
+// Does not validate more than that the pattern is known.
+absl::StatusOr<Sampling> SamplingFromWire(const v1::Sampling& message, absl::string_view path);
+
 // `camera_name` is sent when it is not empty, else request.camera.
 v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameRequest& request,
                                           const std::string& camera_name, bool all_layers);

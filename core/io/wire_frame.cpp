@@ -76,6 +76,7 @@ void FrameChunks::FillEnd(v1::FrameEnd* end) const {
   end->set_max_relative_error(frame_.max_relative_error);
   end->set_lane_rounding(frame_.lane_rounding);
   end->set_white(frame_.white);
+  *end->mutable_sampling() = SamplingToWire(frame_.sampling);
 }
 
 FrameAssembler::FrameAssembler(int width, int height, bool all_layers) : all_layers_(all_layers) {
@@ -158,6 +159,9 @@ absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
     return absl::DataLossError(
         absl::StrCat("a frame ended with ", pixels_filled_, " of ", filled_.size(), " pixels"));
   }
+  const auto sampling = SamplingFromWire(end.sampling(), "");
+  if (!sampling.ok()) return absl::DataLossError(sampling.status().message());
+  frame_.sampling = *sampling;
   frame_.scene_version = end.scene_version();
   frame_.stats = FrameStatsFromWire(end.stats());
   frame_.camera = CameraFromWire(end.camera());

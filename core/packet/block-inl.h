@@ -72,7 +72,7 @@ HWY_INLINE void ClearQueues(PacketWorkspace& workspace) {
   }
 }
 
-// Where the lanes of a tile lie in the image.
+// Where the lanes of a tile lie in the target.
 struct TilePlace {
   int column = 0, row = 0;  // of the top left pixel
   LaneMask lanes = 0;       // that are pixels
@@ -158,7 +158,7 @@ class BlockRenderer {
         digested_(task.target.topology != nullptr),
         tiles_across_((task.region.width + kTileSide - 1) / kTileSide),
         tiles_down_((task.region.height + kTileSide - 1) / kTileSide),
-        grid_(task.eye_rays, task.region.column, task.region.row),
+        grid_(task.eye_rays, task.region.column, task.region.row, task.samples),
         sighter_(scene, task.eye_rays, grid_),
         follower_(scene, task.limits, lights, digested_, workspace, counts) {
     SetUpPaths(packet_);
@@ -196,6 +196,16 @@ class BlockRenderer {
     return count;
   }
 
+  // Whether it is known what all wanted tiles of the square see.
+  HWY_INLINE bool IsSeen(int column, int row, int side) const {
+    for (int r = row; r < row + side; ++r) {
+      for (int c = column; c < column + side; ++c) {
+        if (IsWanted(c, r) && !task_.seen[r * tiles_across_ + c].is_known) return false;
+      }
+    }
+    return true;
+  }
+
   HWY_INLINE Sight Look(int column, int row, int side) const {
     const int x = column * kTileSide, y = row * kTileSide;
     return sighter_.Look(x, y, std::min(side * kTileSide, task_.region.width - x),
@@ -205,6 +215,10 @@ class BlockRenderer {
   HWY_NOINLINE void RenderSquare(int column, int row, int side) {
     const int wanted = CountWanted(column, row, side);
     if (wanted == 0) return;
+    if (task_.seen != nullptr && IsSeen(column, row, side)) {
+      RenderTilesOf(column, row, side, nullptr);
+      return;
+    }
     Sight sight;
     if (task_.sees_squares && 2 * wanted >= side * side) sight = Look(column, row, side);
     const int half = side / 2;
@@ -226,7 +240,14 @@ class BlockRenderer {
   HWY_INLINE void RenderTilesOf(int column, int row, int side, const VisibleFace* face) {
     for (int r = row; r < row + side; ++r) {
       for (int c = column; c < column + side; ++c) {
-        if (IsWanted(c, r)) RenderTile(c, r, face);
+        if (!IsWanted(c, r)) continue;
+        const SeenFace* seen = task_.seen != nullptr ? &task_.seen[r * tiles_across_ + c] : nullptr;
+        if (face == nullptr && seen != nullptr && seen->is_known) {
+          const VisibleFace own = {seen->object, seen->code};
+          RenderTile(c, r, &own);
+        } else {
+          RenderTile(c, r, face);
+        }
       }
     }
   }
@@ -237,7 +258,7 @@ class BlockRenderer {
     const int tile = tile_row * tiles_across_ + tile_column;
     const int column = tile_column * kTileSide, row = tile_row * kTileSide;
     TilePlace& place = places_[tile];
-    place = {region.column + column, region.row + row,
+    place = {region.column - task_.left + column, region.row - task_.top + row,
              LanesWithin(region.width - column, region.height - row)};
     const int first = tile * kPacketLanes;
     packet_.rays.active = place.lanes;
@@ -284,9 +305,8 @@ class BlockRenderer {
         return false;
       }
       Floats radiance[3], depth;
-      if (!lights_.EvaluateSheet(packet_, grid_.Across(column), grid_.Up(row), radiance, depth)) {
-        return false;
-      }
+      const EyeGrid::PlanePlaces at = grid_.PlacesOf(column, row);
+      if (!lights_.EvaluateSheet(packet_, at.across, at.up, radiance, depth)) return false;
       counts_.on_sheets += static_cast<uint64_t>(std::popcount(place.lanes));
       float* sums = workspace_.radiance() + first;
       for (int c = 0; c < 3; ++c) radiance[c].Store(sums + c * kBlockPixels);

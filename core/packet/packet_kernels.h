@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/packet/packet_tracer.h"
+#include "core/scene/pixel_samples.h"
 
 namespace linetree {
 
@@ -20,10 +21,18 @@ void ShadeWide(const PacketScene& scene, const PacketRays& rays, const PacketHit
 void RadianceWide(const PacketScene& scene, const PacketRays& rays, const PathLimits& limits,
                   PacketWorkspace& workspace, PacketRgb& radiance, PacketCounts& counts);
 
+// What all rays of a tile meet first, where that is known: a face, or nothing (kNoObject). `code`:
+// as Nearest has it.
+struct SeenFace {
+  int32_t object = kNoObject;
+  int32_t code = 0;
+  bool is_known = false;
+};
+
 // A region of at most kBlockSide pixels a side.
 struct BlockTask {
   const EyeRays& eye_rays;
-  PacketTracer::Region region;
+  PacketTracer::Region region;  // of the image
   const PathLimits& limits;
   size_t stride;
   const PixelTarget& target;
@@ -31,6 +40,10 @@ struct BlockTask {
   bool sees_squares;
   // Of the region's tiles, row by row, those whose bit is set.
   uint64_t tiles = ~uint64_t{0};
+  // Pixels are cells of these, counted in the finer image that `eye_rays` are those of.
+  const PixelSamples* samples = nullptr;
+  int left = 0, top = 0;           // the image's pixel that the target begins with
+  const SeenFace* seen = nullptr;  // by tile
 };
 void RenderBlockWide(const PacketScene& scene, const BlockTask& task, PacketWorkspace& workspace,
                      PacketCounts& counts);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/math/mixed_bits.h"
 #include "core/trace/ray_tree.h"
 
 namespace linetree {
@@ -12,14 +13,6 @@ namespace linetree {
 inline constexpr uint32_t kEyePath = 1;
 inline uint32_t PathOf(uint32_t parent, Branch branch) {
   return 2 * parent + (branch == Branch::kTransmitted ? 1 : 0);
-}
-
-// splitmix64's finaliser.
-inline uint64_t MixedBits(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
 }
 
 // What the digest sums over all nodes but those that were cut off, and over their lights (with

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scene/camera.h"
+#include "core/scene/pixel_samples.h"
 #include "core/scene/scene.h"
 #include "core/trace/counts.h"
 #include "core/tree/verdict.h"
@@ -25,7 +26,7 @@ inline constexpr int kSourceCount = 5;
 
 // Counters of one frame or batch. interpolated + traced + background == pixels.
 struct FrameStats {
-  uint64_t pixels = 0;
+  uint64_t pixels = 0;  // answers: where a pixel has several samples, each counts as one
   uint64_t interpolated = 0;
   uint64_t traced = 0;    // the three sources that are evaluated anew
   uint64_t replayed = 0;  // of these: see Source
@@ -51,7 +52,8 @@ struct FrameStages {
   double learn_ms = 0;  // cells certified
 };
 
-// Row-major, row 0 on top.
+// Row-major, row 0 on top. Where a pixel has several samples, its radiance is their mean
+// (sample_mean.h), and its other layers are those of one of them (ShownSample).
 struct Frame {
   int width = 0;
   int height = 0;
@@ -63,6 +65,7 @@ struct Frame {
   // it.
   std::vector<float> depth;
   Camera camera;
+  Sampling sampling;
   double max_relative_error = 0;
   // What arithmetic in float may add to that (PacketRadianceRounding); 0 for frames in double.
   double lane_rounding = 0;

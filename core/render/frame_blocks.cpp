@@ -1,5 +1,3 @@
-#include "core/render/frame_blocks.h"
-
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -11,7 +9,10 @@
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
+#include "core/render/frame_blocks.h"
 #include "core/render/grow_trees.h"
+#include "core/render/sample_blocks.h"
+#include "core/render/sample_mean.h"
 #include "core/render/tile_sources.h"
 
 namespace linetree {
@@ -88,12 +89,18 @@ class Blocks {
         progress_(progress),
         frame_(frame),
         across_((frame.width + kBlockSide - 1) / kBlockSide),
-        down_((frame.height + kBlockSide - 1) / kBlockSide) {}
+        down_((frame.height + kBlockSide - 1) / kBlockSide) {
+    if (!frame.sampling.IsPlain()) samples_.emplace(frame.sampling);
+  }
 
   bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
 
   void RenderClassical() {
-    RenderWave(0, 1, std::nullopt, [](size_t) { return kAllTiles; });
+    if (samples_) {
+      RenderSamples(0, 1, std::nullopt);
+    } else {
+      RenderWave(0, 1, std::nullopt, [](size_t) { return kAllTiles; });
+    }
   }
 
   void RenderCached();
@@ -116,9 +123,20 @@ class Blocks {
   double SumError() const { return options_.max_relative_error - packets_.radiance_rounding(); }
 
   template <class Fn>
-  void ForBlocks(double from, double to, Fn&& body);
+  void ForBlocks(double from, double to, RayCounts& rays, Fn&& body);
   // Without `asking` no tree is asked.
   void RenderWave(double from, double to, std::optional<Asking> asking, const TilesOf& tiles_of);
+  void RenderSamples(double from, double to, std::optional<Asking> asking);
+  void RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts, OnceBlock& once,
+                  UseCounts& uses);
+  void RenderTask(const BlockTask& task, std::optional<Asking> asking, PacketWorkspace& workspace,
+                  PacketCounts& counts);
+  // Where no tree pays there is nothing to look up.
+  std::optional<Asking> PaidFor(std::optional<Asking> asking) const {
+    return asking == Asking::kPlanned && !plan_.PaysAny() ? std::nullopt : asking;
+  }
+  // Samples of a pixel.
+  double Each() const { return samples_ ? samples_->count() : 1; }
   double Grow(const Growth& growth);
   FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
   // Render squares of blocks, what is not `done` of them, and grow trees: for at most so much,
@@ -142,13 +160,16 @@ class Blocks {
   const Progress& progress_;
   Frame& frame_;
   const int across_, down_;
+  // Of frames with several to a pixel. Their trees learn from rays through the pixels' centres,
+  // which are no part of the picture.
+  std::optional<PixelSamples> samples_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<PacketWorkspace>> idle_;  // guarded by mutex_
 };
 
 // body(block, workspace, counts) for all blocks; reports progress from one share to the other.
 template <class Fn>
-void Blocks::ForBlocks(double from, double to, Fn&& body) {
+void Blocks::ForBlocks(double from, double to, RayCounts& rays, Fn&& body) {
   const size_t count = BlockCount();
   for (size_t begin = 0; begin < count && !IsCancelled(); begin += kSliceBlocks) {
     std::vector<PacketCounts> counts(std::min(kSliceBlocks, count - begin));
@@ -170,33 +191,73 @@ void Blocks::ForBlocks(double from, double to, Fn&& body) {
           idle_.push_back(std::move(workspace));
         },
         &frame_.stats.cpu_ms);
-    for (const PacketCounts& c : counts) frame_.stats.base += c.rays;
+    for (const PacketCounts& c : counts) rays += c.rays;
     const double done = static_cast<double>(begin + counts.size()) / static_cast<double>(count);
     if (progress_) progress_(from + (to - from) * done);
   }
 }
 
+void Blocks::RenderTask(const BlockTask& task, std::optional<Asking> asking,
+                        PacketWorkspace& workspace, PacketCounts& counts) {
+  if (!asking) {
+    RenderBlockWide(packets_.scene(), task, workspace, counts);
+    return;
+  }
+  const SurfaceCache::Reader reader(surfaces_, SumError());
+  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, *asking, workspace, counts);
+}
+
 void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
                         const TilesOf& tiles_of) {
-  // Where no tree pays there is nothing to look up.
-  const bool asked = asking && (*asking != Asking::kPlanned || plan_.PaysAny());
+  asking = PaidFor(asking);
   std::vector<UseCounts> uses(BlockCount());
-  ForBlocks(from, to, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+  RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
+  ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
     const uint64_t tiles = tiles_of(block);
     if (tiles == 0) return;
     const PixelTarget target = Target();
     const PacketTracer::Region region = RegionOf(block);
     const BlockTask task = {
         eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
-    if (asked) {
-      const SurfaceCache::Reader reader(surfaces_, SumError());
-      RenderFrameBlockWide(packets_.scene(), task, reader, plan_, *asking, workspace, counts);
-    } else {
-      RenderBlockWide(packets_.scene(), task, workspace, counts);
-    }
-    StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
+    RenderTask(task, asking, workspace, counts);
+    StoreSources(region, tiles, workspace.uses(), asking.has_value(), frame_, uses[block]);
   });
-  for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
+  if (samples_) return;
+  for (const UseCounts& counts : uses) AddSources(counts, asking.has_value(), frame_.stats);
+}
+
+void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts,
+                        OnceBlock& once, UseCounts& uses) {
+  const PacketTracer::Region region = RegionOf(block);
+  const PixelTarget target = Target();
+  const ShownSample shown(*samples_);
+  const OnceTask task = {eye_rays_, region, Stride(), target, *samples_, shown.column, shown.row};
+  const SurfaceCache::Reader reader(surfaces_, SumError());
+  RenderOnceWide(packets_.scene(), task, reader, plan_, workspace, counts, once);
+  const auto each = static_cast<uint64_t>(samples_->count());
+  StoreOnce(region, once.done, workspace.uses(), each, frame_, uses);
+}
+
+void Blocks::RenderSamples(double from, double to, std::optional<Asking> asking) {
+  asking = PaidFor(asking);
+  const EyeRays eye_rays = eye_rays_.Divided(samples_->across(), samples_->down());
+  const SampledFrame sampled = {
+      *samples_, eye_rays, options_.limits, packets_.sees_squares(), asking.has_value(), frame_};
+  // At epsilon 0 every sample is evaluated.
+  const bool evaluates_once = sampled.asked && SumError() > 0;
+  std::vector<UseCounts> uses(BlockCount());
+  const auto body = [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+    const auto render = [&](const BlockTask& task) {
+      RenderTask(task, asking, workspace, counts);
+      return workspace.uses();
+    };
+    OnceBlock once;
+    if (evaluates_once) RenderOnce(block, workspace, counts, once, uses[block]);
+    RenderSampledBlock(sampled, RegionOf(block), render, evaluates_once ? &once : nullptr,
+                       uses[block]);
+  };
+  ForBlocks(from, to, frame_.stats.base, body);
+  for (const UseCounts& counts : uses) AddSources(counts, sampled.asked, frame_.stats);
 }
 
 double Blocks::Grow(const Growth& growth) {
@@ -224,9 +285,9 @@ void Blocks::RenderCached() {
     return (block + turn) % probed == 0 ? FirstTile(block) : 0;
   };
   const FramePlan::Booked first = Probe(0, 0.05, first_tile);
-  const auto share = static_cast<double>(kTilesOfBlock * probed);
+  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
   const double work =
-      kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
+      Each() * kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
   const double promised = share * first.promised;
   double purse = kLearningShare * work;
   purse -= Grow({share, share, kSureHorizon, std::min(purse, promised / 2)});
@@ -240,7 +301,11 @@ void Blocks::RenderCached() {
       purse -= Explore(kExploredBlocks, kLearningHorizon, purse, done);
     }
   }
-  RenderWave(0.5, 1, Asking::kPlanned, [&](size_t block) { return kAllTiles & ~done[block]; });
+  if (samples_) {
+    RenderSamples(0.5, 1, Asking::kPlanned);
+  } else {
+    RenderWave(0.5, 1, Asking::kPlanned, [&](size_t block) { return kAllTiles & ~done[block]; });
+  }
   Grow({1, share, kLearningHorizon, purse});
 }
 
@@ -259,8 +324,8 @@ double Blocks::Explore(size_t often, double horizon, double most_work,
   RenderWave(0.05, 0.1, Asking::kExploring,
              [&](size_t block) { return square(block) & ~done[block]; });
   for (size_t block = 0; block < done.size(); ++block) done[block] |= square(block);
-  const double weight = static_cast<double>(often) / ShareOf(kExploredSide);
-  const auto booked = static_cast<double>(kTilesOfBlock * ProbedBlocks());
+  const double weight = Each() * static_cast<double>(often) / ShareOf(kExploredSide);
+  const double booked = Each() * static_cast<double>(kTilesOfBlock * ProbedBlocks());
   return Grow({weight, booked, horizon, most_work});
 }
 
@@ -275,9 +340,9 @@ void Blocks::TrySquares(std::vector<uint64_t>& done) {
     return SquareOf(block, kTriedSide) & ~corner(block) & ~done[block];
   });
   for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, kTriedSide);
-  const double share = static_cast<double>(kTilesOfBlock * probed);
+  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
   const double earned = kReinvested * share * (1 - ShareOf(kTriedSide)) * booked.saved;
-  if (earned > 0) Grow({1 / ShareOf(kTriedSide), share, kSureHorizon, earned});
+  if (earned > 0) Grow({Each() / ShareOf(kTriedSide), share, kSureHorizon, earned});
 }
 
 }  // namespace

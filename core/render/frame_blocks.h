@@ -17,9 +17,10 @@
 
 namespace linetree {
 
-// Fills in the frame's pixels and adds to its stats. Under Mode::kCached the trees of `surfaces`
-// are asked and grow; sums of diffuse light are used where they leave room for
-// the packets' own rounding. CANCELLED when `cancel` said so (what was built stays).
+// Fills in the frame's pixels, each the mean of its samples, and adds to its stats. Under
+// Mode::kCached the trees of `surfaces` are asked and grow; sums of diffuse light are used where
+// they leave room for the packets' own rounding. CANCELLED when `cancel` said so (what was built
+// stays).
 absl::Status RenderBlocks(const PacketTracer& packets, SurfaceCache& surfaces, FramePlan& plan,
                           const RenderOptions& options, const EyeRays& eye_rays, WorkerPool& pool,
                           const CancelToken* cancel, const Progress& progress, Frame& frame);

@@ -40,4 +40,15 @@ absl::Status ValidateSize(int64_t width, int64_t height, const RenderLimits& lim
   return absl::OkStatus();
 }
 
+absl::Status ValidateSamples(const Sampling& sampling, int width, int height,
+                             const RenderLimits& limits) {
+  if (auto s = ValidateSampling(sampling); !s.ok()) return s;
+  const uint64_t samples = static_cast<uint64_t>(width) * static_cast<uint64_t>(height) *
+                           static_cast<uint64_t>(sampling.samples);
+  if (samples <= limits.max_samples) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrCat("sampling.samples: at most ", limits.max_samples,
+                                                   " are allowed in all pixels together, got ",
+                                                   samples));
+}
+
 }  // namespace linetree

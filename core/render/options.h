@@ -2,6 +2,7 @@
 #pragma once
 
 #include "absl/status/status.h"
+#include "core/scene/pixel_samples.h"
 #include "core/trace/tracer.h"
 
 namespace linetree {
@@ -41,6 +42,7 @@ struct RenderOptions {
 struct RenderLimits {
   int max_side = 16384;
   uint64_t max_pixels = uint64_t{1} << 26;
+  uint64_t max_samples = uint64_t{1} << 32;  // of all pixels together
   uint64_t max_rays = uint64_t{1} << 20;
 };
 
@@ -49,5 +51,10 @@ absl::Status ValidateOptions(const RenderOptions& options);
 
 // OK, INVALID_ARGUMENT for a size below 1, RESOURCE_EXHAUSTED for one beyond the limits.
 absl::Status ValidateSize(int64_t width, int64_t height, const RenderLimits& limits);
+
+// OK, INVALID_ARGUMENT as ValidateSampling, RESOURCE_EXHAUSTED for more samples than the limits
+// have room for. The size is valid.
+absl::Status ValidateSamples(const Sampling& sampling, int width, int height,
+                             const RenderLimits& limits);
 
 }  // namespace linetree

@@ -8,6 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "core/render/frame_blocks.h"
 #include "core/render/ray_blocks.h"
+#include "core/render/sample_mean.h"
+#include "core/render/sample_rays.h"
 
 namespace linetree {
 namespace {
@@ -52,6 +54,7 @@ Frame EmptyFrame(const Scene& scene, const FrameRequest& request) {
   frame.verdict.resize(pixels);
   frame.depth.resize(pixels);
   frame.camera = request.camera;
+  frame.sampling = request.sampling;
   frame.max_relative_error = request.options.max_relative_error;
   frame.white = scene.white;
   frame.scene_version = scene.version;
@@ -199,22 +202,36 @@ absl::Status SceneHost::RenderRays(const FrameRequest& request, WorkerPool& pool
   return absl::OkStatus();
 }
 
+absl::Status SceneHost::RenderPackets(const FrameRequest& request, WorkerPool& pool,
+                                      const CancelToken* cancel, const Progress& progress,
+                                      Frame& frame) {
+  frame.lane_rounding = packets().radiance_rounding();
+  if (!request.sampling.IsPlain()) frame.lane_rounding += kMeanRounding;
+  auto status = RenderBlocks(packets(), surfaces_, plan_, request.options,
+                             EyeRays(request.camera, request.width, request.height), pool, cancel,
+                             progress, frame);
+  frame.stats.cache_bytes = CacheBytes();
+  return status;
+}
+
 absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
                                              const CancelToken* cancel, const Progress& progress) {
   if (auto s = ValidateCamera(request.camera); !s.ok()) return s;
   if (auto s = ValidateSize(request.width, request.height, limits_); !s.ok()) return s;
   if (auto s = ValidateOptions(request.options); !s.ok()) return s;
+  if (auto s = ValidateSamples(request.sampling, request.width, request.height, limits_); !s.ok()) {
+    return s;
+  }
   const Stopwatch stopwatch;
   Frame frame = EmptyFrame(*scene_, request);
   absl::Status status;
   if (GoesByPackets(request.options)) {
-    frame.lane_rounding = packets().radiance_rounding();
-    status = RenderBlocks(packets(), surfaces_, plan_, request.options,
-                          EyeRays(request.camera, request.width, request.height), pool, cancel,
-                          progress, frame);
-    frame.stats.cache_bytes = CacheBytes();
-  } else {
+    status = RenderPackets(request, pool, cancel, progress, frame);
+  } else if (request.sampling.IsPlain()) {
     status = RenderRays(request, pool, cancel, progress, frame);
+  } else {
+    status = AnswerSamples(tracer_, cache_, {surfaces_, paths_}, request.options, pool, cancel,
+                           progress, frame);
   }
   if (!status.ok()) return status;
   frame.stats.wall_ms = stopwatch.Ms();

@@ -31,6 +31,7 @@ struct FrameRequest {
   int width = 512;
   int height = 512;
   RenderOptions options;
+  Sampling sampling{};
 };
 
 struct RayBatch {
@@ -100,6 +101,8 @@ class SceneHost {
   bool GoesByPackets(const RenderOptions& options) const;
   absl::Status RenderRays(const FrameRequest& request, WorkerPool& pool, const CancelToken* cancel,
                           const Progress& progress, Frame& frame);
+  absl::Status RenderPackets(const FrameRequest& request, WorkerPool& pool,
+                             const CancelToken* cancel, const Progress& progress, Frame& frame);
 
   const std::shared_ptr<const Scene> scene_;
   const RenderLimits limits_;

@@ -1,6 +1,7 @@
 #include "core/render/tile_sources.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace linetree {
@@ -67,6 +68,26 @@ void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8
         frame.source[p] = answer.source;
         frame.verdict[p] = answer.verdict;
       }
+    }
+  }
+}
+
+void StoreOnce(const PacketTracer::Region& block, const LaneMask* done, const uint8_t* uses,
+               uint64_t each, Frame& frame, UseCounts& counts) {
+  const auto stride = static_cast<size_t>(frame.width);
+  const int across = (block.width + kTileSide - 1) / kTileSide;
+  const int down = (block.height + kTileSide - 1) / kTileSide;
+  for (int tile = 0; tile < across * down; ++tile) {
+    for (LaneMask left = done[tile]; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const auto use = static_cast<size_t>(uses[tile * kPacketLanes + lane]);
+      counts.of[use] += each;
+      const Answer answer = AnswerOf(use, true);
+      const int column = block.column + tile % across * kTileSide + lane % kTileSide;
+      const int row = block.row + tile / across * kTileSide + lane / kTileSide;
+      const size_t p = static_cast<size_t>(row) * stride + static_cast<size_t>(column);
+      frame.source[p] = answer.source;
+      frame.verdict[p] = answer.verdict;
     }
   }
 }

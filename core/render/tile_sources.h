@@ -21,6 +21,11 @@ struct UseCounts {
 void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8_t* uses,
                   bool asked, Frame& frame, UseCounts& counts);
 
+// The same of pixels that were evaluated once for `each` samples: those of the block's tiles that
+// are `done`.
+void StoreOnce(const PacketTracer::Region& block, const LaneMask* done, const uint8_t* uses,
+               uint64_t each, Frame& frame, UseCounts& counts);
+
 // Adds a block's pixels to the frame's counters.
 void AddSources(const UseCounts& counts, bool asked, FrameStats& stats);
 

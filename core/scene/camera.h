@@ -54,6 +54,14 @@ class EyeRays {
   Ray Through(double x, double y) const;
   Ray ThroughPixel(int column, int row) const { return Through(column + 0.5, row + 0.5); }
 
+  // The same view, each pixel of it divided into `across` x `down`.
+  EyeRays Divided(int across, int down) const {
+    EyeRays divided = *this;
+    divided.width_ *= across;
+    divided.height_ *= down;
+    return divided;
+  }
+
   // What Through adds up: the direction of (x, y), before it is scaled to unit length, is
   // forward + right (2 x / width - 1) + up (1 - 2 y / height).
   const Vec3d& eye() const { return eye_; }

@@ -107,6 +107,34 @@ TEST(LiveAuditTest, FramesAreComparedAsFloats) {
   EXPECT_TRUE(log.violations()[0].from_frame);
 }
 
+// All rays of a pixel are traced again, not the one through its centre.
+TEST(LiveAuditTest, PixelsOfSeveralSamplesAreHeldAgainstTheirMean) {
+  Served served(1);
+  served.options.max_relative_error = 0;
+  FrameRequest request;
+  request.camera = served.host->scene().cameras[0];
+  request.width = 40;
+  request.height = 30;
+  request.options = served.options;
+  request.sampling = {5, SamplePattern::kJittered, 3};
+  WorkerPool pool(1);
+  auto frame = served.host->RenderFrame(request, pool);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  Log log;
+  LiveAudit audit({.share = 1}, log.Writer());
+  audit.Offer(served.scene, served.options, *frame);
+  audit.WaitUntilChecked();
+  EXPECT_EQ(served.scene.counts->values(), (AuditCounts::Values{.checked = 1200}));
+  EXPECT_TRUE(log.violations().empty());
+
+  frame->radiance[3 * 47] += 1;
+  audit.Offer(served.scene, served.options, *frame);
+  audit.WaitUntilChecked();
+  ASSERT_EQ(log.violations().size(), 1u);
+  EXPECT_EQ(log.violations()[0].pixel.find("7,1 of 40x30 eye="), 0u) << log.violations()[0].pixel;
+  EXPECT_NE(ToLine(log.violations()[0]).find("samples=5 jittered seed=3\""), std::string::npos);
+}
+
 TEST(LiveAuditTest, RaysByPacketsMayBeOffByWhatFloatAdds) {
   Served served(1);
   served.rays = Served(500).rays;

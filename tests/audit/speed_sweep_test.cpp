@@ -26,6 +26,7 @@ TEST(SpeedSweepTest, EachVariesItsOwnNumber) {
   EXPECT_EQ(At(Sweep::kResolution, 300).options.height, 300);
   EXPECT_EQ(At(Sweep::kEpsilon, 0.125).options.epsilon, 0.125);
   EXPECT_EQ(At(Sweep::kThreads, 3).threads, 3);
+  EXPECT_EQ(At(Sweep::kSamples, 9).options.sampling.samples, 9);
 }
 
 TEST(SpeedSweepTest, TheRestIsLeftAsItIs) {
@@ -66,6 +67,7 @@ TEST(SpeedSweepTest, PointsAreChecked) {
   EXPECT_FALSE(ValidatePoint(Sweep::kDepth, kMaxPathDepth + 1).ok());
   EXPECT_FALSE(ValidatePoint(Sweep::kEpsilon, -0.1).ok());
   EXPECT_TRUE(ValidatePoint(Sweep::kEpsilon, 0.1).ok());
+  EXPECT_FALSE(ValidatePoint(Sweep::kSamples, kMaxPixelSamples + 1).ok());
 }
 
 }  // namespace

@@ -139,6 +139,7 @@ TEST_F(FrameRequestTest, LosesNothing) {
   request.width = 33;
   request.height = 44;
   request.options.max_relative_error = 0.75;
+  request.sampling = {9, SamplePattern::kJittered, ~uint64_t{0}};
   request_ = FrameRequestToWire("balls", request, "", true);
   EXPECT_TRUE(request_.all_layers());
   const auto back = Read();
@@ -147,6 +148,23 @@ TEST_F(FrameRequestTest, LosesNothing) {
   EXPECT_EQ(back->width, 33);
   EXPECT_EQ(back->height, 44);
   EXPECT_EQ(back->options.max_relative_error, 0.75);
+  EXPECT_EQ(back->sampling, request.sampling);
+}
+
+TEST_F(FrameRequestTest, SamplesAreCheckedAndOneWhenLeftOut) {
+  EXPECT_TRUE(Read()->sampling.IsPlain());
+  v1::Sampling& sampling = *request_.mutable_sampling();
+  for (const uint32_t samples : {65u, 1u << 31, ~0u}) {
+    sampling.set_samples(samples);
+    const absl::Status status = Read().status();
+    EXPECT_TRUE(absl::IsInvalidArgument(status));
+    EXPECT_EQ(status.message().find("frame.sampling.samples: expected 1 to 64, got "), 0u)
+        << status;
+  }
+  sampling.set_samples(64);
+  EXPECT_EQ(Read()->sampling.samples, 64);
+  sampling.set_pattern(static_cast<v1::SamplePattern>(7));
+  EXPECT_TRUE(absl::IsInvalidArgument(Read().status()));
 }
 
 TEST_F(FrameRequestTest, NoViewIsTheFirstCamera) {

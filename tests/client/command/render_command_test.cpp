@@ -106,6 +106,32 @@ TEST(RenderCommand, ClassicalTracesEverything) {
   EXPECT_GT(json["traced"], 0);
 }
 
+TEST(RenderCommand, PixelsHaveSeveralSamples) {
+  TempDir dir;
+  const auto render = [&](std::vector<std::string> flags) {
+    flags.insert(flags.end(), {"--stats", dir.File("a.json"), "-o", dir.File("a.exr")});
+    const Finished run = RunLinetree(Render("gap.textproto", flags));
+    EXPECT_EQ(run.exit_status, 0) << run.err;
+    return ReadExr(dir.File("a.exr"))->radiance;
+  };
+  const std::vector<float> one = render({"--lanes", "simd"});
+  const std::vector<float> nine = render({"--lanes", "simd", "--samples", "9"});
+  EXPECT_NE(one, nine);
+  const nlohmann::json json = ReadJson(dir.File("a.json"));
+  const auto pixels = json["width"].get<int>() * json["height"].get<int>();
+  EXPECT_EQ(json["pixels"], 9 * pixels);
+  EXPECT_EQ(json["samples"], 9);
+  const std::vector<std::string> jittered = {"--samples",     "9", "--sampling", "jittered",
+                                             "--sample-seed", "4"};
+  EXPECT_EQ(render(jittered), render(jittered));
+  EXPECT_NE(render(jittered), nine);
+  for (const char* samples : {"0", "65", "x"}) {
+    const Finished run = RunLinetree(Render("gap.textproto", {"--samples", samples}));
+    EXPECT_EQ(run.exit_status, 2);
+    EXPECT_THAT(run.err, HasSubstr("--samples"));
+  }
+}
+
 TEST(RenderCommand, ExplainsWhatWasLeftOut) {
   const Finished run =
       RunLinetree(Render("many_lights.textproto", {"--lanes", "simd", "--explain"}));
