@@ -22,6 +22,7 @@ constexpr std::array<size_t, 4> kLightCounts = {3, 16, 32, 128};
 
 struct BenchCertifyFlags {
   CellStudyOptions cells;
+  std::vector<std::string> families = {kSparseFamilyNames.begin(), kSparseFamilyNames.end()};
   FrameStudyOptions frames;
   std::vector<std::string> parts = {kParts.begin(), kParts.end()};
   std::vector<std::string> scenes;
@@ -51,6 +52,15 @@ absl::StatusOr<std::vector<std::string>> ScenesIn(const std::string& folder) {
   }
   std::sort(files.begin(), files.end());
   return files;
+}
+
+std::vector<SparseFamily> FamiliesOf(const std::vector<std::string>& names) {
+  std::vector<SparseFamily> families;
+  for (const std::string& name : names) {
+    const auto at = std::find(kSparseFamilyNames.begin(), kSparseFamilyNames.end(), name);
+    families.push_back(static_cast<SparseFamily>(at - kSparseFamilyNames.begin()));
+  }
+  return families;
 }
 
 absl::Status MeasureLights(const BenchCertifyFlags& flags, WorkerPool& pool,
@@ -99,10 +109,11 @@ absl::StatusOr<CertifyReport> Measure(const BenchCertifyFlags& flags) {
   WorkerPool pool(flags.threads);
   CertifyReport report;
   report.cell_options = flags.cells;
+  report.cell_options.families = FamiliesOf(flags.families);
   const bool shows = !flags.quiet && IsTerminal();
   if (flags.Wants("cells")) {
     ProgressBar bar(shows, "bench certify: cells");
-    report.cells = StudyCells(flags.cells, pool, [&](double share) { bar.Show(share); });
+    report.cells = StudyCells(report.cell_options, pool, [&](double share) { bar.Show(share); });
   }
   if (flags.Wants("lights")) {
     if (auto s = MeasureLights(flags, pool, report); !s.ok()) return s;
@@ -121,7 +132,8 @@ void Print(const BenchCertifyFlags& flags, const CertifyReport& report) {
               << flags.cells.seed << ")\n"
               << CellTable(report)
               << "\nWhy cells are refused, as shares of all of them: the first "
-              << "doubt about their paths, or too large a bound\n"
+              << "doubt about their paths (in brackets: of cells whose sampled rays all take the "
+                 "same path), or too large a bound\n"
               << DoubtTable(report) << "\n";
   }
   if (!report.lights.empty()) {
@@ -163,7 +175,14 @@ void AddBenchCertify(CLI::App& bench, Commands& commands) {
       ->check(CLI::IsMember(std::vector<std::string>(kParts.begin(), kParts.end())))
       ->capture_default_str();
   app->add_option("--seed", flags->cells.seed, "Of the random cells")->capture_default_str();
-  app->add_option("--cell-scenes", flags->cells.scenes, "Random scenes, 60 cells each and edge")
+  app->add_option("--family", flags->families, "Of the random scenes with cells")
+      ->type_name("NAME")
+      ->delimiter(',')
+      ->check(CLI::IsMember(
+          std::vector<std::string>(kSparseFamilyNames.begin(), kSparseFamilyNames.end())))
+      ->capture_default_str();
+  app->add_option("--cell-scenes", flags->cells.scenes,
+                  "Random scenes of each family, 60 cells each and edge")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   app->add_option("--scene", flags->scenes, "Scene file for the frames; may be given again")

@@ -15,9 +15,14 @@ double Share(uint64_t part, uint64_t whole) {
 
 std::string Ratio(double value) { return absl::StrFormat("%.2f", value); }
 
-nlohmann::json DoubtsJson(const CellStudyRow& row) {
+std::string FamilyName(const CellStudyRow& row) {
+  return std::string(kSparseFamilyNames[static_cast<size_t>(row.family)]);
+}
+std::string EdgeText(const CellStudyRow& row) { return absl::StrFormat("1/%.0f", 1 / row.edge); }
+
+nlohmann::json DoubtsJson(const std::array<uint64_t, kDoubtCount>& doubts) {
   nlohmann::json json = nlohmann::json::object();
-  for (size_t d = 1; d < kDoubtCount; ++d) json[std::string(kDoubtNames[d])] = row.doubts[d];
+  for (size_t d = 1; d < kDoubtCount; ++d) json[std::string(kDoubtNames[d])] = doubts[d];
   return json;
 }
 
@@ -35,10 +40,9 @@ uint64_t CertifyReport::Violations() const {
 }
 
 std::string CellTable(const CertifyReport& report) {
-  std::vector<TableColumn> columns = {{"edge", Align::kRight},
-                                      {"cells", Align::kRight},
-                                      {"same paths", Align::kRight},
-                                      {"partly", Align::kRight}};
+  std::vector<TableColumn> columns = {{"scenes", Align::kLeft},      {"edge", Align::kRight},
+                                      {"cells", Align::kRight},      {"isotopic", Align::kRight},
+                                      {"same paths", Align::kRight}, {"partly", Align::kRight}};
   for (const double epsilon : report.cell_options.epsilons) {
     columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
     columns.push_back({"paper's", Align::kRight});
@@ -50,7 +54,10 @@ std::string CellTable(const CertifyReport& report) {
   }
   Table table(columns);
   for (const CellStudyRow& row : report.cells) {
-    std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge), Grouped(row.cells),
+    std::vector<std::string> line = {FamilyName(row),
+                                     EdgeText(row),
+                                     Grouped(row.cells),
+                                     Percent(Share(row.isotopic, row.cells)),
                                      Percent(Share(row.same_paths, row.cells)),
                                      Percent(Share(row.partly, row.cells))};
     for (size_t i = 0; i < row.certified.size(); ++i) {
@@ -72,7 +79,7 @@ std::string CellTable(const CertifyReport& report) {
 }
 
 std::string DoubtTable(const CertifyReport& report) {
-  std::vector<TableColumn> columns = {{"edge", Align::kRight}};
+  std::vector<TableColumn> columns = {{"scenes", Align::kLeft}, {"edge", Align::kRight}};
   for (size_t d = 1; d < kDoubtCount; ++d) {
     columns.push_back({std::string(kDoubtNames[d]), Align::kRight});
   }
@@ -81,9 +88,10 @@ std::string DoubtTable(const CertifyReport& report) {
   }
   Table table(columns);
   for (const CellStudyRow& row : report.cells) {
-    std::vector<std::string> line = {absl::StrFormat("1/%.0f", 1 / row.edge)};
+    std::vector<std::string> line = {FamilyName(row), EdgeText(row)};
     for (size_t d = 1; d < kDoubtCount; ++d) {
-      line.push_back(Percent(Share(row.doubts[d], row.cells)));
+      line.push_back(absl::StrCat(Percent(Share(row.doubts[d], row.cells)), " (",
+                                  Percent(Share(row.isotopic_doubts[d], row.cells)), ")"));
     }
     for (const uint64_t certified : row.certified) {
       line.push_back(Percent(Share(row.same_paths - certified, row.cells)));
@@ -145,11 +153,14 @@ std::string FrameTable(const CertifyReport& report) {
 nlohmann::json CertifyJson(const CertifyReport& report) {
   nlohmann::json json = {{"seed", report.cell_options.seed}, {"violations", report.Violations()}};
   for (const CellStudyRow& row : report.cells) {
-    json["cells"].push_back({{"edge", row.edge},
+    json["cells"].push_back({{"scenes", FamilyName(row)},
+                             {"edge", row.edge},
                              {"cells", row.cells},
                              {"same_paths", row.same_paths},
                              {"partly", row.partly},
-                             {"doubts", DoubtsJson(row)},
+                             {"doubts", DoubtsJson(row.doubts)},
+                             {"isotopic", row.isotopic},
+                             {"isotopic_doubts", DoubtsJson(row.isotopic_doubts)},
                              {"epsilons", report.cell_options.epsilons},
                              {"certified", row.certified},
                              {"paper", row.paper},

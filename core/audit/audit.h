@@ -50,7 +50,9 @@ struct AuditReport {
   double wall_s = 0;
 };
 
-// INVALID_ARGUMENT for bad epsilons, and for nothing to audit.
+// INVALID_ARGUMENT for bad epsilons, and for nothing to audit. Scenes are audited side by side
+// where there are as many as threads, so the answerer is called from several threads at once;
+// `progress` is not.
 absl::StatusOr<AuditReport> RunAudit(const AuditOptions& options, Answerer& answerer,
                                      WorkerPool& pool, const Progress& progress = nullptr);
 

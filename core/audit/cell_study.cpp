@@ -6,7 +6,6 @@
 
 #include "core/audit/clock.h"
 #include "core/audit/random_stream.h"
-#include "core/audit/sparse_scene.h"
 #include "core/certify/path_certifier.h"
 #include "core/tree/corner_sample.h"
 #include "core/tree/paper_judge.h"
@@ -38,10 +37,10 @@ struct RandomCell {
 
 class SceneStudy {
  public:
-  SceneStudy(const CellStudyOptions& options, uint64_t seed)
+  SceneStudy(const CellStudyOptions& options, SparseFamily family, uint64_t seed)
       : options_(options),
         random_(MixBits(seed)),
-        scene_(MakeSparseScene(seed)),
+        scene_(MakeSparseScene(family, seed)),
         tracer_(*scene_),
         certifier_(tracer_),
         paper_(tracer_) {
@@ -115,6 +114,10 @@ class SceneStudy {
     const double before_shades = NowUs();
     const Corners corners = Shade(cell);
     if (same) row.shades_us += NowUs() - before_shades;
+    if (LooksIsotopic(cell, corners)) {
+      ++row.isotopic;
+      if (!same) ++row.isotopic_doubts[static_cast<size_t>(paths.doubt)];
+    }
     const Judgement paper = paper_.Decide(corners);
     for (size_t i = 0; i < options_.epsilons.size(); ++i) {
       const double epsilon = options_.epsilons[i];
@@ -137,14 +140,42 @@ class SceneStudy {
     return corners;
   }
 
-  // One ray of the cell: sides and middles are as likely as the rest.
+  // Of a ray in the cell: sides and middles are as likely as the rest.
+  RayCoords SomeLocal() {
+    RayCoords local;
+    for (double& x : local) x = random_.OneIn(4) ? 0.5 * random_.Below(3) : random_.Unit();
+    return local;
+  }
+  static RayCoords In(const CellBox& box, const RayCoords& local) {
+    RayCoords at;
+    for (size_t i = 0; i < 4; ++i) at[i] = box.from[i] + local[i] * (box.to[i] - box.from[i]);
+    return at;
+  }
+
+  bool LooksIsotopic(const RandomCell& cell, const Corners& corners) {
+    const auto is_like_first = [&](const CornerSample& sample) {
+      return sample.hits && SameTopology(sample.tree, corners[0]->tree);
+    };
+    if (!std::all_of(corners.begin(), corners.end(),
+                     [&](const auto& corner) { return is_like_first(*corner); })) {
+      return false;
+    }
+    const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
+    RayCounts counts;
+    for (int q = 0; q < options_.queries_per_cell; ++q) {
+      const RayCoords at = In(cell.box, SomeLocal());
+      if (!is_like_first(
+              TraceCorner(tracer_, cell.object, chart, cell.pair, at, limits_, counts))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   void Query(const RandomCell& cell, const CellPaths& paths, CellStudyRow& row) {
     if (paths.steps.empty()) return;
-    RayCoords local, at;
-    for (size_t i = 0; i < 4; ++i) {
-      local[i] = random_.OneIn(4) ? 0.5 * random_.Below(3) : random_.Unit();
-      at[i] = cell.box.from[i] + local[i] * (cell.box.to[i] - cell.box.from[i]);
-    }
+    const RayCoords local = SomeLocal();
+    const RayCoords at = In(cell.box, local);
     const Ray line = charts_[static_cast<size_t>(cell.object)].LineOf(cell.pair, at);
     const Hit hit = tracer_.IntersectObjectLine(cell.object, line.origin, line.direction);
     if (!hit.IsHit() || !paths.steps[0].EndsAt(hit)) return;
@@ -185,7 +216,11 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
     to.certified[i] += from.certified[i];
     to.paper[i] += from.paper[i];
   }
-  for (size_t i = 0; i < from.doubts.size(); ++i) to.doubts[i] += from.doubts[i];
+  for (size_t i = 0; i < from.doubts.size(); ++i) {
+    to.doubts[i] += from.doubts[i];
+    to.isotopic_doubts[i] += from.isotopic_doubts[i];
+  }
+  to.isotopic += from.isotopic;
   to.queries += from.queries;
   to.violations += from.violations;
   to.replay_differences += from.replay_differences;
@@ -198,26 +233,35 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
   to.shades_us += from.shades_us;
 }
 
+CellStudyRow StudyCells(const CellStudyOptions& options, SparseFamily family, double edge,
+                        WorkerPool& pool) {
+  std::vector<CellStudyRow> parts(static_cast<size_t>(options.scenes));
+  pool.ParallelFor(parts.size(), [&](size_t i) {
+    parts[i] = SceneStudy(options, family, options.seed * 1'000'003 + i).Study(edge);
+  });
+  CellStudyRow row = parts[0];
+  row.family = family;
+  for (size_t i = 1; i < parts.size(); ++i) Add(parts[i], row);
+  const double accepted = std::max<double>(1, static_cast<double>(row.same_paths));
+  row.accepted_us /= accepted;
+  row.shades_us /= accepted;
+  row.partly_us /= std::max<double>(1, static_cast<double>(row.partly));
+  row.refused_us /=
+      std::max<double>(1, static_cast<double>(row.cells - row.same_paths - row.partly));
+  return row;
+}
+
 }  // namespace
 
 std::vector<CellStudyRow> StudyCells(const CellStudyOptions& options, WorkerPool& pool,
                                      const std::function<void(double)>& progress) {
   std::vector<CellStudyRow> rows;
-  for (size_t e = 0; e < options.edges.size(); ++e) {
-    std::vector<CellStudyRow> parts(static_cast<size_t>(options.scenes));
-    pool.ParallelFor(parts.size(), [&](size_t i) {
-      parts[i] = SceneStudy(options, options.seed * 1'000'003 + i).Study(options.edges[e]);
-    });
-    CellStudyRow row = parts[0];
-    for (size_t i = 1; i < parts.size(); ++i) Add(parts[i], row);
-    const double accepted = std::max<double>(1, static_cast<double>(row.same_paths));
-    row.accepted_us /= accepted;
-    row.shades_us /= accepted;
-    row.partly_us /= std::max<double>(1, static_cast<double>(row.partly));
-    row.refused_us /=
-        std::max<double>(1, static_cast<double>(row.cells - row.same_paths - row.partly));
-    rows.push_back(row);
-    progress(static_cast<double>(e + 1) / static_cast<double>(options.edges.size()));
+  const size_t count = options.families.size() * options.edges.size();
+  for (const SparseFamily family : options.families) {
+    for (const double edge : options.edges) {
+      rows.push_back(StudyCells(options, family, edge, pool));
+      progress(static_cast<double>(rows.size()) / static_cast<double>(count));
+    }
   }
   return rows;
 }

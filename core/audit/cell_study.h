@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/audit/sparse_scene.h"
 #include "core/certify/cell_paths.h"
 #include "core/render/worker_pool.h"
 
@@ -13,7 +14,8 @@ namespace linetree {
 
 struct CellStudyOptions {
   uint64_t seed = 1;
-  int scenes = 100;  // of MakeSparseScene
+  std::vector<SparseFamily> families = {SparseFamily::kEven, SparseFamily::kOpaque};
+  int scenes = 100;  // of each family
   int cells_per_scene = 60;
   int queries_per_cell = 40;
   // Edges of cells as parts of the faces of the object's bounding box.
@@ -22,8 +24,9 @@ struct CellStudyOptions {
   int max_depth = 6;
 };
 
-// All cells of one edge.
+// All cells of one edge in the scenes of one family.
 struct CellStudyRow {
+  SparseFamily family = SparseFamily::kEven;
   double edge = 0;
   uint64_t cells = 0;                      // whose middle ray was aimed at an object
   uint64_t partly = 0;                     // others that save some search all the same
@@ -31,6 +34,10 @@ struct CellStudyRow {
   std::vector<uint64_t> certified, paper;  // accepted, by epsilon
   // The others, by the first reason why not all rays certainly take the same path.
   std::array<uint64_t, kDoubtCount> doubts{};
+  // Cells whose corners and `queries_per_cell` more rays have isomorphic ray trees: what a judge
+  // could accept at most, and of these the others again.
+  uint64_t isotopic = 0;
+  std::array<uint64_t, kDoubtCount> isotopic_doubts{};
   uint64_t queries = 0;             // rays inside certified cells
   uint64_t violations = 0;          // whose error is beyond the cell's bound
   uint64_t replay_differences = 0;  // answers along the cell's lists that differ by a bit
@@ -42,6 +49,7 @@ struct CellStudyRow {
   double accepted_us = 0, partly_us = 0, refused_us = 0, shades_us = 0;
 };
 
+// By family, then edge.
 std::vector<CellStudyRow> StudyCells(const CellStudyOptions& options, WorkerPool& pool,
                                      const std::function<void(double)>& progress);
 

@@ -10,8 +10,7 @@ namespace linetree {
 struct SurfaceCache::Work {
   SurfaceNode* node = nullptr;
   size_t object = 0;
-  double points = 0;        // shading points expected in it
-  double least_points = 0;  // Thrift's
+  double points = 0;  // shading points expected in it
   const CellLights* parent = nullptr;
   std::unique_ptr<const CellLights> lights{};  // the result
   bool may_divide = true;
@@ -47,14 +46,17 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
   ++clock_;
   std::vector<Work> works;
   store_.ForEachTree([&](size_t object, SurfaceTree& tree) {
-    const double least = thrift.least_points == nullptr ? 0 : (*thrift.least_points)(object);
-    if (std::isinf(least)) return;
+    const auto least = [&](const CellLights* known) {
+      return thrift.least_points == nullptr ? 0 : (*thrift.least_points)(object, known);
+    };
+    if (std::isinf(least(nullptr))) return;
     tree.cells().ForEach([&](SurfaceNode& node) {
       if (!node.IsLeaf()) return;
       const uint32_t uses = node.uses.exchange(0, std::memory_order_relaxed);
-      if (uses < thrift.least_uses || uses * weight < least) return;
-      if (uses == 0 || (node.payload && !node.payload->WantsSmaller())) return;
-      works.push_back({&node, object, uses * weight, least});
+      if (uses < thrift.least_uses || uses == 0) return;
+      if (node.payload && !node.payload->WantsSmaller()) return;
+      if (uses * weight < least(node.payload.get())) return;
+      works.push_back({&node, object, uses * weight});
     });
   });
   store_.PlantWanted(memory_bytes_, [&](size_t object) {
@@ -66,29 +68,42 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
 void SurfaceCache::Trim(std::vector<Work>& works, const Thrift& thrift, double& left) {
   std::stable_sort(works.begin(), works.end(),
                    [](const Work& a, const Work& b) { return a.points > b.points; });
+  double planned = left;
   std::erase_if(works, [&](const Work& work) {
-    const double price = work.node->payload ? 0 : (*thrift.price)(work.object);
-    if (price > left) return true;
-    left -= price;
+    const CellLights* known = work.node->payload.get();
+    // Who is known is there to be divided.
+    const double price = (known ? 4 : 1) * (*thrift.price)(work.object, known);
+    if (price > planned) return true;
+    planned -= price;
+    if (!known) left -= price;
     return false;
   });
 }
 
 void SurfaceCache::AllowDivisions(std::vector<Work>& works, const Thrift& thrift, double left) {
-  for (Work& work : works) {
-    const double price = 4 * (*thrift.price)(work.object);
-    work.may_divide = price <= left;
-    if (work.may_divide) left -= price;
+  // First those that were planned, then those whose own knowledge is still to come.
+  for (const bool is_known : {true, false}) {
+    for (Work& work : works) {
+      const CellLights* known = work.node->payload.get();
+      if ((known != nullptr) != is_known) continue;
+      const double price = 4 * (*thrift.price)(work.object, known);
+      work.may_divide = price <= left;
+      if (work.may_divide) left -= price;
+    }
   }
 }
 
-bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights) const {
-  return work.may_divide && work.points >= std::max(min_uses_, 2 * work.least_points) &&
-         work.node->cell.depth < kMaxSurfaceDepth && lights.WantsSmaller();
+bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights,
+                                const Thrift& thrift) const {
+  if (!work.may_divide || work.points < min_uses_) return false;
+  if (work.node->cell.depth >= kMaxSurfaceDepth || !lights.WantsSmaller()) return false;
+  return thrift.least_points == nullptr ||
+         work.points >= 2 * (*thrift.least_points)(work.object, &lights);
 }
 
 std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
-                                                      const ParallelLoop& loop) {
+                                                      const ParallelLoop& loop,
+                                                      const Thrift& thrift) {
   loop(works.size(), [&](size_t i) {
     Work& work = works[i];
     if (work.node->payload) return;
@@ -96,7 +111,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
     auto lights = std::make_unique<CellLights>(certifier_.Certify(
         static_cast<int>(work.object), chart, work.node->root, work.node->cell, work.parent));
     // Who is about to be divided answers nobody.
-    if (!ShouldDivide(work, *lights)) {
+    if (!ShouldDivide(work, *lights, thrift)) {
       summer_.AddSums(static_cast<int>(work.object), chart, work.node->root, work.node->cell,
                       *lights);
     }
@@ -111,15 +126,17 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       if (!work.lights) continue;  // the loop was cut short
       if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
     }
-    if (!ShouldDivide(work, *node.payload) || !store_.Divide(node, clock_, memory_bytes_)) continue;
+    if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, memory_bytes_))
+      continue;
     for (SurfaceNode& child : *node.children) {
-      next.push_back({&child, work.object, work.points / 4, work.least_points, node.payload.get()});
+      next.push_back({&child, work.object, work.points / 4, node.payload.get()});
     }
   }
   return next;
 }
 
-uint64_t SurfaceCache::Refine(double weight, const ParallelLoop& loop, const Thrift& thrift) {
+SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop,
+                                         const Thrift& thrift) {
   std::lock_guard refining(refine_mutex_);
   const uint64_t before = CellCount();
   std::vector<Work> works = CollectUsed(weight, thrift);
@@ -128,13 +145,15 @@ uint64_t SurfaceCache::Refine(double weight, const ParallelLoop& loop, const Thr
   if (is_limited) Trim(works, thrift, left);
   while (!works.empty()) {
     if (is_limited) AllowDivisions(works, thrift, left);
-    works = Publish(std::move(works), loop);
-    for (const Work& child : works) left -= is_limited ? (*thrift.price)(child.object) : 0;
+    works = Publish(std::move(works), loop, thrift);
+    for (const Work& child : works) {
+      left -= is_limited ? (*thrift.price)(child.object, child.parent) : 0;
+    }
   }
   const uint64_t certified = CellCount() - before;
   std::unique_lock lock(mutex_);
   store_.Evict(EvictionTarget(memory_bytes_));
-  return certified;
+  return {certified, is_limited ? thrift.most_work - left : 0};
 }
 
 void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {

@@ -55,20 +55,30 @@ class SurfaceCache {
   // Which of the cells that were used are worth their price.
   struct Thrift {
     uint32_t least_uses = 1;  // of a cell that is certified
+    // What a cell of an object costs, given what is known of the one that it is a quarter of (null:
+    // nothing).
+    using Price = std::function<double(size_t object, const CellLights* parent)>;
     // Shading points of an object's cell that is certified (infinity: none); of one that is
-    // divided, twice as many, and the cache's own least number at least. Null: any.
-    const std::function<double(size_t)>* least_points = nullptr;
+    // divided, given what is known of it, twice as many, and the cache's own least number at least.
+    // Null: any.
+    const Price* least_points = nullptr;
     // Whether an object without a tree may get one. Null: all.
     const std::function<bool(size_t)>* may_grow = nullptr;
-    // What a cell of an object costs, and what all may cost together: those that most points ask
-    // for come first. Null: nothing.
-    const std::function<double(size_t)>* price = nullptr;
+    // Prices, and what all cells may cost together: those that most points ask for come first.
+    // Null: nothing.
+    const Price* price = nullptr;
     double most_work = std::numeric_limits<double>::infinity();
   };
+  struct Grown {
+    uint64_t cells = 0;  // certified
+    double work = 0;     // their price
+  };
   // Certifies and divides the cells that were used since the last call where that pays; `weight` is
-  // the number of shading points that one use stands for. Returns how many cells it certified.
-  uint64_t Refine(double weight, const ParallelLoop& loop, const Thrift& thrift);
-  uint64_t Refine(double weight, const ParallelLoop& loop) { return Refine(weight, loop, {}); }
+  // the number of shading points that one use stands for.
+  Grown Refine(double weight, const ParallelLoop& loop, const Thrift& thrift);
+  uint64_t Refine(double weight, const ParallelLoop& loop) {
+    return Refine(weight, loop, {}).cells;
+  }
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
@@ -82,14 +92,15 @@ class SurfaceCache {
   struct Work;
 
   // Whether smaller cells are worth their cost, with what is known of this one.
-  bool ShouldDivide(const Work& work, const CellLights& lights) const;
+  bool ShouldDivide(const Work& work, const CellLights& lights, const Thrift& thrift) const;
   std::vector<Work> CollectUsed(double weight, const Thrift& thrift);
   // Drops works that cost more than `left`, which is reduced by what the others do.
   static void Trim(std::vector<Work>& works, const Thrift& thrift, double& left);
   // Says which of the works may be divided, for what is left.
   static void AllowDivisions(std::vector<Work>& works, const Thrift& thrift, double left);
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
-  std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop);
+  std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop,
+                            const Thrift& thrift);
 
   const LightCertifier certifier_;
   const DiffuseSummer summer_;

@@ -9,11 +9,11 @@
 
 #include <numbers>
 
+#include "core/certify/curved_terms.h"
 #include "core/certify/jet_shape.h"
 #include "core/jet/angle_functions-inl.h"
 #include "core/jet/jet_vector-inl.h"
-#include "core/scene/light.h"
-#include "core/tree/surface_chart.h"
+#include "core/scene/scene.h"
 
 LINETREE_BEFORE_JETS();
 namespace linetree::LINETREE_JETS {
@@ -22,14 +22,6 @@ class CurvedCell {
  public:
   using Jet = CornerJet<2>;
   using Vector = JetVector<2>;
-
-  // max(0, n.l) over the cell.
-  struct Term {
-    bool is_known = false;
-    double error = 0;  // of bilinear interpolation between the corners
-    double least = 0, most = 0;
-    std::array<double, 4> corners{};
-  };
 
   CurvedCell(const JetShape& shape, int patch, const SurfaceCell& cell) : shape_(shape) {
     const double width = std::ldexp(1.0, -cell.depth);
@@ -45,8 +37,8 @@ class CurvedCell {
   // Whether the surface has a normal everywhere on the cell.
   bool IsValid() const { return is_valid_; }
 
-  Term CosineTo(const Light& light) const {
-    Term term;
+  CurvedTerm CosineTo(const Light& light) const {
+    CurvedTerm term;
     Jet facing;
     if (light.kind == LightKind::kDirectional) {
       facing = Dot(normal_, light.to_light);
@@ -61,7 +53,7 @@ class CurvedCell {
     facing.k.Store(corners);
     for (size_t k = 0; k < 4; ++k) term.corners[k] = std::max(0.0, corners[k]);
     term.is_known = true;
-    if (facing.hi() < -kSetting) return Term{true, 0, 0, 0, {}};
+    if (facing.hi() < -kSetting) return CurvedTerm{true, 0, 0, 0, {}};
     term.least = std::max(0.0, facing.lo());
     term.most = std::max(0.0, facing.hi());
     const double range = facing.v.Width() + facing.slack;
@@ -125,6 +117,15 @@ class CurvedCell {
   bool is_valid_ = false;
   Vector object_point_, point_, normal_;
 };
+
+inline bool FindCurvedTerms(const CurvedTask& task, CurvedTerm* terms) {
+  const CurvedCell cell(task.shape, task.patch, task.cell);
+  if (!cell.IsValid()) return false;
+  for (size_t i = 0; i < task.lights.size(); ++i) {
+    terms[i] = cell.CosineTo(task.scene.lights[task.lights[i]]);
+  }
+  return true;
+}
 
 }  // namespace linetree::LINETREE_JETS
 LINETREE_AFTER_JETS();

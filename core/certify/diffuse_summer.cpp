@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/certify/curved_cell-inl.h"
+#include "core/certify/curved_terms.h"
 #include "core/certify/plane_nodes.h"
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
@@ -204,14 +204,17 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const JetShape& shape, int patch,
                                                   const SurfaceCell& cell,
                                                   std::vector<size_t>& lights) const {
-  scalar_jets::CurvedCell curve(shape, patch, cell);
-  if (!curve.IsValid()) return nullptr;
+  const CurvedTask task{scene_, shape, patch, cell, lights};
+  std::vector<CurvedTerm> terms(lights.size());
+  const bool is_valid = lanes_ == Lanes::kSimd ? FindCurvedTermsSimd(task, terms.data())
+                                               : FindCurvedTermsScalar(task, terms.data());
+  if (!is_valid) return nullptr;
   std::array<Rgb, 4> nodes{};
   SumBounds bounds;
-  size_t count = 0;
+  size_t count = 0, next = 0;
   std::erase_if(lights, [&](size_t i) {
     const Light& light = scene_.lights[i];
-    const auto term = curve.CosineTo(light);
+    const CurvedTerm& term = terms[next++];
     if (!term.is_known || !(term.error <= kMaxTermSpread * term.least)) return true;
     bounds.error += Scaled(light.irradiance, term.error);
     bounds.least += Scaled(light.irradiance, term.least);

@@ -30,8 +30,12 @@ inline constexpr double kMaxTermSpread = 1.0 / 64;
 
 class DiffuseSummer {
  public:
-  // Keeps a reference to the scene, which must outlive it.
-  explicit DiffuseSummer(const Scene& scene) : scene_(scene) {}
+  enum class Lanes { kSimd, kScalar };
+
+  // Keeps a reference to the scene, which must outlive it. Without SIMD, the plain twin, sums are
+  // the same, bit by bit.
+  explicit DiffuseSummer(const Scene& scene, Lanes lanes = Lanes::kSimd)
+      : scene_(scene), lanes_(lanes) {}
 
   const Scene& scene() const { return scene_; }
 
@@ -53,6 +57,7 @@ class DiffuseSummer {
                       std::vector<size_t>& lights) const;
 
   const Scene& scene_;
+  const Lanes lanes_;
 };
 
 }  // namespace linetree

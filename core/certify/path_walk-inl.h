@@ -255,18 +255,21 @@ class PathWalk {
     return true;
   }
 
-  // Where the jets put the points of a bundle: the interpolant of the corners lies in their hull.
+  // Where the jets put the points of a bundle: the interpolant of the corners lies in their hull,
+  // and what is curved to one side lies to one side of that: the corners are moved to the middle
+  // between the bounds.
   static PointCloud CloudOf(const Vector& v) {
     PointCloud cloud;
-    double x[16], y[16], z[16];
-    v.x.k.Store(x);
-    v.y.k.Store(y);
-    v.z.k.Store(z);
-    for (size_t m = 0; m < 16; ++m) cloud.points[m] = {x[m], y[m], z[m]};
     double square = 0;
-    for (const Jet* c : {&v.x, &v.y, &v.z}) {
-      const double off =
-          std::max(c->ExcessOverQ(), c->ExcessUnderQ()) + c->slack + kDrift * c->Variation();
+    for (const int axis : {0, 1, 2}) {
+      const Jet& c = axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+      const double over = c.ExcessOverQ(), under = c.ExcessUnderQ();
+      const double shift = (over - under) / 2;
+      double corners[16];
+      c.k.Store(corners);
+      for (size_t m = 0; m < 16; ++m) cloud.points[m][axis] = corners[m] + shift;
+      const double off = (over + under) / 2 + c.slack + kDrift * c.Variation() +
+                         2 * kOutward * (c.v.Magnitude() + std::abs(shift));
       square += off * off;
     }
     cloud.slack = RoundUp(std::sqrt(Above(square)));
@@ -324,21 +327,20 @@ class PathWalk {
   void List(const Leg& leg, bool certain, const Hit& middle, const JetHit<4>& hit,
             const std::span<const int32_t>* inherited, size_t index) {
     const bool ends = certain && middle.IsHit();
-    PointCloud end;
-    if (ends) {
-      end = CloudOf(hit.point);
-    } else {
-      const double far =
-          Length(context_.world.Extent()) + Length(leg.middle_origin - context_.world.Center());
-      end = CloudOf(Vector(leg.origin + leg.direction * far));
-    }
+    const double far =
+        Length(context_.world.Extent()) + Length(leg.middle_origin - context_.world.Center());
+    const auto at = [&](double share) {
+      if (!ends) return CloudOf(Vector(leg.origin + leg.direction * (far * share)));
+      return CloudOf(Vector(leg.origin * (1 - share) + hit.point * share));
+    };
     const PointCloud begin = CloudOf(leg.origin);
+    const PointCloud end = ends ? CloudOf(hit.point) : at(1);
     if (!begin.IsFinite() || !end.IsFinite()) {
       paths_.decided = false;
       Refuse(Doubt::kBound);
       return;
     }
-    const RayBundle bundle(context_.scene, context_.search(), leg.start, begin, end);
+    const RayBundle bundle(context_.scene, context_.search(), leg.start, begin, end, at);
     std::vector<int32_t> candidates =
         bundle.Candidates(ends ? middle.object : kNoObject, inherited);
     if (!certain || !candidates.empty()) {

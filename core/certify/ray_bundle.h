@@ -5,9 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "core/math/box3.h"
 #include "core/trace/hit.h"
 #include "core/tree/candidate_search.h"
@@ -25,8 +27,14 @@ struct PointCloud {
 
 class RayBundle {
  public:
+  // Where the segments are when they have gone this share of their way, in (0, 1): the points
+  // a + share (b - a) for the segments a b that there are. Less than what the clouds at their ends
+  // say, which is as if every point of the one went to every point of the other.
+  using Section = absl::FunctionRef<PointCloud(double share)>;
+
   RayBundle(const Scene& scene, const CandidateSearch& search, const RayStart& start,
-            const PointCloud& from, const PointCloud& to);
+            const PointCloud& from, const PointCloud& to,
+            std::optional<Section> section = std::nullopt);
 
   // The objects that some segment may meet, other than `target`; of `inherited` objects only when
   // that is not null. As CandidateSearch: ascending, kMaxCandidates + 1 means too many.
@@ -34,13 +42,16 @@ class RayBundle {
 
  private:
   bool MayMeet(int object) const;
+  // Whether the shape is apart from the segments when they are cut before it and behind it.
+  bool IsApartInParts(const Shape& shape, double clearance) const;
 
   const Scene& scene_;
   const CandidateSearch& search_;
   const RayStart start_;
-  std::array<Vec3d, 32> points_;
+  const std::optional<Section> section_;
+  const PointCloud begin_, end_;
   Box3 from_, to_;
-  double clearance_;  // the clouds' slack included
+  double clearance_;
 };
 
 // Whether the cloud certainly lies inside a solid, or certainly outside.

@@ -41,16 +41,16 @@ namespace linetree::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 void RenderFrameBlock(const PacketScene&, const BlockTask&, const SurfaceCache::Reader&, FramePlan&,
-                      bool, PacketWorkspace&, PacketCounts&) {}
+                      Asking, PacketWorkspace&, PacketCounts&) {}
 void RenderOnce(const PacketScene&, const OnceTask&, const SurfaceCache::Reader&, const FramePlan&,
                 PacketWorkspace&, PacketCounts&, OnceBlock&) {}
 void TraceCachedRays(const PacketScene&, const RayTask&, uint64_t, const SurfaceCache::Reader&,
-                     FramePlan&, bool, PacketWorkspace&, PacketCounts&) {}
+                     FramePlan&, Asking, PacketWorkspace&, PacketCounts&) {}
 #else
 void RenderFrameBlock(const PacketScene& scene, const BlockTask& task,
-                      const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
+                      const SurfaceCache::Reader& reader, FramePlan& plan, Asking asking,
                       PacketWorkspace& workspace, PacketCounts& counts) {
-  CachedLights lights(scene, reader, plan, booking, true, workspace, counts);
+  CachedLights lights(scene, reader, plan, asking, true, workspace, counts);
   BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render();
 }
 void RenderOnce(const PacketScene& scene, const OnceTask& task, const SurfaceCache::Reader& reader,
@@ -59,9 +59,9 @@ void RenderOnce(const PacketScene& scene, const OnceTask& task, const SurfaceCac
   OnceRenderer(scene, task, reader, plan, workspace, counts, block).Render();
 }
 void TraceCachedRays(const PacketScene& scene, const RayTask& task, uint64_t packets,
-                     const SurfaceCache::Reader& reader, FramePlan& plan, bool booking,
+                     const SurfaceCache::Reader& reader, FramePlan& plan, Asking asking,
                      PacketWorkspace& workspace, PacketCounts& counts) {
-  CachedLights lights(scene, reader, plan, booking, false, workspace, counts);
+  CachedLights lights(scene, reader, plan, asking, false, workspace, counts);
   TraceRays(scene, task, packets, lights, workspace, counts);
 }
 #endif
@@ -77,10 +77,10 @@ HWY_EXPORT(RenderOnce);
 HWY_EXPORT(TraceCachedRays);
 
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
-                          const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                          const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
                           PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
-  (scene, task, lights, plan, booking, workspace, counts);
+  (scene, task, lights, plan, asking, workspace, counts);
 }
 void RenderOnceWide(const PacketScene& scene, const OnceTask& task,
                     const SurfaceCache::Reader& lights, const FramePlan& plan,
@@ -88,10 +88,10 @@ void RenderOnceWide(const PacketScene& scene, const OnceTask& task,
   HWY_DYNAMIC_DISPATCH(RenderOnce)(scene, task, lights, plan, workspace, counts, block);
 }
 void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
-                         const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                         const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
                          PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(TraceCachedRays)
-  (scene, task, packets, lights, plan, booking, workspace, counts);
+  (scene, task, packets, lights, plan, asking, workspace, counts);
 }
 
 }  // namespace linetree

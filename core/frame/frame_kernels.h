@@ -7,9 +7,16 @@
 
 namespace linetree {
 
-// As RenderBlockWide, with the trees' help. `booking`: the work is booked in the plan.
+// Whose trees are asked.
+enum class Asking {
+  kBooked,     // everybody's, and the work is booked in the plan
+  kExploring,  // of objects where they are worth growing
+  kPlanned,    // where they pay as they are
+};
+
+// As RenderBlockWide, with the trees' help.
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
-                          const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                          const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
                           PacketWorkspace& workspace, PacketCounts& counts);
 
 // A region of at most kBlockSide pixels a side, each with several samples.
@@ -34,7 +41,7 @@ void RenderOnceWide(const PacketScene& scene, const OnceTask& task,
 
 // Of the packets of a block of rays, those whose bit is set in `packets`.
 void TraceCachedRaysWide(const PacketScene& scene, const RayTask& task, uint64_t packets,
-                         const SurfaceCache::Reader& lights, FramePlan& plan, bool booking,
+                         const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
                          PacketWorkspace& workspace, PacketCounts& counts);
 
 }  // namespace linetree

@@ -10,6 +10,8 @@
 #include <cmath>
 
 #include "core/cache/surface_cache.h"
+#include "core/frame/booking-inl.h"
+#include "core/frame/frame_kernels.h"
 #include "core/frame/frame_plan.h"
 #include "core/frame/groups-inl.h"
 #include "core/frame/listed-inl.h"
@@ -18,23 +20,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
-// Lights of a Follower. `is_frame`: packets of eye rays are tiles of an image. `booking`: the work
-// is counted for the plan, beside what it would be without the trees.
+// Lights of a Follower. `is_frame`: packets of eye rays are tiles of an image. Where work is
+// booked, it is counted for the plan beside what it would be without the trees.
 class CachedLights {
  public:
   static constexpr bool kHasSheets = true;
 
   HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
-                          FramePlan& plan, bool booking, bool is_frame, PacketWorkspace& workspace,
+                          FramePlan& plan, Asking asking, bool is_frame, PacketWorkspace& workspace,
                           PacketCounts& counts)
       : scene_(scene),
         reader_(reader),
         plan_(plan),
-        booking_(booking),
+        asking_(asking),
+        is_booked_(asking == Asking::kBooked),
         is_frame_(is_frame),
         workspace_(workspace),
         last_blockers_(workspace.LastBlockers(scene.lights().size())),
         counts_(counts),
+        booking_(scene, plan, reader.epsilon() > 0),
         cells_(reader),
         sheet_(scene, reader, cells_) {}
   // Written down, because what is implicit is not compiled for this target.
@@ -47,7 +51,7 @@ class CachedLights {
     asked_face_ = face;
     const auto object = static_cast<size_t>(face.object);
     has_sheet_ = false;
-    if (booking_ || !(reader_.epsilon() > 0) || plan_.Skips(object)) return false;
+    if (is_booked_ || !(reader_.epsilon() > 0) || !Asks(object)) return false;
     const SurfaceTree* tree = reader_.TreeOf(object);
     return has_sheet_ = tree != nullptr && sheet_.Open(*tree, face, eye_rays, block);
   }
@@ -69,17 +73,15 @@ class CachedLights {
     groups_ = 0;
     use_ = {};
     unknown_ = 0;
-    visits_ = 0;
     for (Floats& light : summed_) light = Floats::All(0);
-    const uint32_t classical =
-        booking_ ? WorkWithoutTrees(packet, hits, at, materials, lanes, sum) : 0;
+    if (is_booked_) booking_.Begin(packet, hits, at, materials, lanes, sum, workspace_);
     next_unknown_ = 0;
-    if (booking_ || !is_frame_ || !SkipsAny(hits, lanes)) {
+    if (is_booked_ || !is_frame_ || !SkipsAny(hits, lanes)) {
       Collect(packet, hits, lanes, materials);
     } else {
       unknown_ = lanes;
     }
-    if (booking_) Book(classical, lanes);
+    if (is_booked_) booking_.Close(unknown_ == 0);
     // A search costs the same for one lane and for all. But which rays share a packet is for frames
     // to say; answers of a batch don't depend on it.
     if (unknown_ == lanes || (unknown_ != 0 && is_frame_)) {
@@ -97,13 +99,6 @@ class CachedLights {
   }
 
  private:
-  // Lanes on one face, and the work that they cost.
-  struct Visit {
-    int32_t object;
-    LaneMask lanes;
-    uint32_t work;
-    bool is_sheet;  // or could be
-  };
   // Finds the cells of the lanes, and leaves those that are in none in unknown_.
   void Collect(const PathPacket& packet, const PacketHits& hits, LaneMask lanes,
                const LaneMaterials& materials) {
@@ -117,21 +112,19 @@ class CachedLights {
           BitsOf(OfFloats((objects == Ints::All(object)) & (faces == Ints::All(face)))) & left;
       left &= ~same;
       skipped_ = plan_.Skips(static_cast<size_t>(object));
-      if (skipped_ && !booking_) {
+      if (!is_booked_ && !Asks(static_cast<size_t>(object))) {
         unknown_ |= same;
         continue;
       }
-      Visit& visit = visit_[visits_++];
-      visit = {object, same, 0, MayBeSheet(packet, object, face, same)};
+      if (is_booked_) booking_.Visit(object, same, MayBeSheet(packet, object, face, same));
       const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
       if (tree == nullptr) {
-        visit.work = (visit.is_sheet ? 0 : kPlaneWork) + WorkIn(nullptr, visit.is_sheet);
+        if (is_booked_) booking_.AddUnknown();
         unknown_ |= same;
         continue;
       }
       const FaceForm& form = tree->FormOf(face);
-      const bool is_plane = form.kind == FaceForm::Kind::kPlane;
-      visit.work = visit.is_sheet ? 0 : is_plane ? kPlaneWork : kCurveWork;
+      if (is_booked_) booking_.AddPlaces(form.kind == FaceForm::Kind::kPlane);
       PlaceHits(form, hits, same, places_);
       // A grazing ray's normal may be turned inwards by rounding.
       const LaneMask placed = places_.on & (tree->chart().IsThin() ? kAllLanes : places_.outward);
@@ -148,10 +141,7 @@ class CachedLights {
       LaneMask same = LanesIn(entry) & left;
       left &= ~same;
       if (!skipped_) entry.uses += static_cast<uint32_t>(std::popcount(same));
-      if (booking_) {
-        Visit& visit = visit_[visits_ - 1];
-        visit.work += WorkIn(node.payload.get(), visit.is_sheet);
-      }
+      if (is_booked_) booking_.AddCell(node.payload.get());
       if (node.payload == nullptr) {
         unknown_ |= same;
         continue;
@@ -295,11 +285,14 @@ class CachedLights {
     sum.Add(light, seen, shadow, work.shines);
   }
 
+  HWY_INLINE bool Asks(size_t object) const {
+    return plan_.Pays(object) || (asking_ == Asking::kExploring && !plan_.Skips(object));
+  }
   HWY_INLINE bool SkipsAny(const PacketHits& hits, LaneMask lanes) const {
     int32_t last = kNoObject;
     for (LaneMask left = lanes; left != 0; left &= left - 1) {
       const int32_t object = hits.object[std::countr_zero(left)];
-      if (object != last && plan_.Skips(static_cast<size_t>(object))) return true;
+      if (object != last && !Asks(static_cast<size_t>(object))) return true;
       last = object;
     }
     return false;
@@ -315,63 +308,17 @@ class CachedLights {
            scene_.IsFlat(object, face);
   }
 
-  // What a packet in a cell costs; in one that is not built yet, at least.
-  uint32_t WorkIn(const CellLights* known, bool is_sheet) const {
-    const size_t lights = scene_.lights().size();
-    if (is_sheet) {
-      return kSheetWork + (known == nullptr ? SheetWorkOfUnknown(lights)
-                                            : known->rest_of_tasks * kSheetLightWork);
-    }
-    if (known == nullptr) return kCellWork + WorkOfUnknown(lights);
-    uint32_t work = kCellWork;
-    work += known->sums[0] || known->sums[1] ? kSumWork : 0;
-    for (const LightTask& task : known->tasks) {
-      if (task.kind == LightTask::Kind::kSummed && reader_.epsilon() > 0) continue;
-      work += kLightWork;
-      if (task.kind == LightTask::Kind::kListed) work += kListWork + task.count * kCandidateWork;
-      if (task.kind == LightTask::Kind::kUnknown) work += kShadowWork + 4 * kTestWork;
-    }
-    return work;
-  }
-
-  // Does what the classical tracer does, for the sake of counting it.
-  uint32_t WorkWithoutTrees(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
-                            const LaneMaterials& materials, LaneMask lanes, const LightSum& sum) {
-    LightSum forgotten = sum;
-    PacketCounts done;
-    SearchedLights searched(scene_, false, workspace_, done);
-    searched.Add(packet, hits, at, materials, lanes, forgotten);
-    return static_cast<uint32_t>(scene_.lights().size() * kLightWork +
-                                 done.shadow_packets * kShadowWork + done.shadow_tests * kTestWork);
-  }
-
-  void Book(uint32_t classical, LaneMask lanes) {
-    const auto all = static_cast<uint32_t>(std::popcount(lanes));
-    int skipped = 0;
-    for (int i = 0; i < visits_; ++i) skipped += Skips(visit_[i]) ? 1 : 0;
-    for (int i = 0; i < visits_; ++i) {
-      const Visit& visit = visit_[i];
-      const auto own = static_cast<uint32_t>(std::popcount(visit.lanes));
-      const uint32_t without = classical * own / all;
-      // Who shares a packet with lanes that are searched for saves nothing.
-      const bool is_alone = skipped == (Skips(visit) ? 1 : 0);
-      plan_.Book(static_cast<size_t>(visit.object), own,
-                 is_alone ? visit.work : std::max(visit.work, without), without, unknown_ == 0);
-    }
-  }
-  bool Skips(const Visit& visit) const { return plan_.Skips(static_cast<size_t>(visit.object)); }
-
   const PacketScene& scene_;
   const SurfaceCache::Reader& reader_;
   FramePlan& plan_;
-  const bool booking_;
+  const Asking asking_;
+  const bool is_booked_;
   const bool is_frame_;
   PacketWorkspace& workspace_;
   int32_t* const last_blockers_;
   PacketCounts& counts_;
   bool skipped_ = false;  // the object that is looked at
-  Visit visit_[kPacketLanes];
-  int visits_ = 0;
+  Booking booking_;
   Places places_;
   OpenCells cells_;
   Sheet sheet_;

@@ -137,7 +137,7 @@ class OnceRenderer {
     asked_face_ = face;
     opens_ = false;
     const auto object = static_cast<size_t>(face.object);
-    if (!(reader_.epsilon() > 0) || plan_.Skips(object)) return false;
+    if (!(reader_.epsilon() > 0) || !plan_.Pays(object)) return false;
     const SurfaceTree* tree = reader_.TreeOf(object);
     return opens_ = tree != nullptr &&
                     sheet_.Open(*tree, face, task_.eye_rays,

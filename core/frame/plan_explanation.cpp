@@ -6,10 +6,12 @@
 namespace linetree {
 namespace {
 
-PlanReason ReasonOf(const FramePlan& plan, const FramePlan::Known& known, bool asked) {
+PlanReason ReasonOf(const FramePlan& plan, size_t object, const FramePlan::Known& known,
+                    bool asked) {
   if (plan.always()) return PlanReason::kAlways;
   if (!known.decided) return PlanReason::kUnseen;
   if (asked) return PlanReason::kPays;
+  if (!plan.Skips(object)) return PlanReason::kGrowing;
   return known.pays || known.points == 0 ? PlanReason::kTooSmall : PlanReason::kCostsMore;
 }
 
@@ -35,6 +37,8 @@ std::string_view WordsFor(PlanReason reason) {
       return "not seen yet: taken for a usual one";
     case PlanReason::kPays:
       return "saves work";
+    case PlanReason::kGrowing:
+      return "would save work: cells are still to be built";
     case PlanReason::kCostsMore:
       return "saves too little";
     case PlanReason::kTooSmall:
@@ -52,8 +56,8 @@ std::vector<ObjectPlan> ExplainPlan(const FramePlan& plan, std::span<const TreeS
     const FramePlan::Known known = plan.KnownOf(i);
     ObjectPlan object;
     object.object = i;
-    object.asked = !plan.Skips(i);
-    object.reason = ReasonOf(plan, known, object.asked);
+    object.asked = plan.Pays(i);
+    object.reason = ReasonOf(plan, i, known, object.asked);
     object.points = known.points;
     if (known.points > 0) {
       object.tree_work = static_cast<double>(known.asked) / known.points;

@@ -18,6 +18,7 @@ namespace linetree {
 enum class PlanReason {
   kUnseen,     // no packet that counts lay on it yet: taken for a usual object
   kPays,       // its trees save enough of the work that was counted
+  kGrowing,    // they would, once there are more cells
   kCostsMore,  // its trees cost more than they save, or save less than kLeastSaving
   kTooSmall,   // they would save, but not what planting them costs: too few points
   kAlways,     // CacheOptions::always_ask

@@ -1,7 +1,6 @@
 #include "core/render/frame_blocks.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -25,11 +24,15 @@ constexpr size_t kTilesInRow = kBlockSide / 4;
 constexpr uint64_t kAllTiles = ~uint64_t{0};
 static_assert(kTilesOfBlock == 64);
 
-// Cells that promise to save less than this share of the frame's work can wait for its end.
-constexpr double kLeastPromise = 0.1;
-constexpr uint32_t kOftenDecided = 3;
-// Then one in so many blocks is: where trees pay, and where none does.
-constexpr size_t kProbedBlocks = 4, kIdleBlocks = 16;
+// What is promised is looked for where it is more than the one share of the frame's work; in few
+// blocks, where it is less than the other.
+constexpr double kLeastPromise = 0.01, kLargePromise = 0.1;
+constexpr size_t kExploredBlocks = 4;
+// What pays for itself many times within the frame may cost this share of its work.
+constexpr double kSureShare = 0.1;
+// One in so many blocks is probed: while little is known, where trees pay, and where none does.
+constexpr size_t kNewBlocks = 2, kProbedBlocks = 4, kIdleBlocks = 16;
+constexpr uint32_t kOftenDecided = 6;
 constexpr size_t kMostProbed = 256;  // there is no need for more
 
 // Blocks that one parallel loop handles: enough to hide its cost, few enough to stop soon.
@@ -37,8 +40,9 @@ constexpr size_t kSliceBlocks = 256;
 
 // One tile of a block, first of all: scattered, so that no pattern of the picture can hide from it.
 uint64_t FirstTile(size_t block) { return uint64_t{1} << (block * 29 % kTilesOfBlock); }
-// Then squares of so many tiles a side, elsewhere: rays that stay together are traced faster.
-constexpr std::array<size_t, 2> kSquareSides = {2, 4};
+// Then squares of so many tiles a side, elsewhere: rays that stay together are traced faster. First
+// to see where cells are missing, then to see what they save.
+constexpr size_t kExploredSide = 2, kTriedSide = 4;
 // The top left one of such a square, and all of it.
 uint64_t CornerOf(size_t block, size_t side) {
   const size_t squares = kTilesInRow / side;
@@ -52,6 +56,8 @@ uint64_t SquareOf(size_t block, size_t side) {
   }
   return tiles;
 }
+// Of a block, how much a square is.
+constexpr double ShareOf(size_t side) { return static_cast<double>(side * side) / kTilesOfBlock; }
 
 // Adds the time that it lives to `ms`.
 class StageTimer {
@@ -92,17 +98,15 @@ class Blocks {
 
   void RenderClassical() {
     if (samples_) {
-      RenderSamples(0, 1, Wave::kClassical);
+      RenderSamples(0, 1, std::nullopt);
     } else {
-      RenderWave(0, 1, Wave::kClassical, [](size_t) { return kAllTiles; });
+      RenderWave(0, 1, std::nullopt, [](size_t) { return kAllTiles; });
     }
   }
 
   void RenderCached();
 
  private:
-  // Whether the trees are asked, and the work is booked.
-  enum class Wave { kClassical, kCached, kBooked };
   using TilesOf = std::function<uint64_t(size_t block)>;
 
   PacketTracer::Region RegionOf(size_t block) const {
@@ -121,23 +125,29 @@ class Blocks {
 
   template <class Fn>
   void ForBlocks(double from, double to, RayCounts& rays, Fn&& body);
-  void RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of);
-  void RenderSamples(double from, double to, Wave wave);
+  // Without `asking` no tree is asked.
+  void RenderWave(double from, double to, std::optional<Asking> asking, const TilesOf& tiles_of);
+  void RenderSamples(double from, double to, std::optional<Asking> asking);
   void RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts, OnceBlock& once,
                   UseCounts& uses);
-  void RenderTask(const BlockTask& task, Wave wave, PacketWorkspace& workspace,
+  void RenderTask(const BlockTask& task, std::optional<Asking> asking, PacketWorkspace& workspace,
                   PacketCounts& counts);
   // Where no tree pays there is nothing to look up.
-  Wave PaidFor(Wave wave) const {
-    return wave == Wave::kCached && plan_.SkipsAll() ? Wave::kClassical : wave;
+  std::optional<Asking> PaidFor(std::optional<Asking> asking) const {
+    return asking == Asking::kPlanned && !plan_.PaysAny() ? std::nullopt : asking;
   }
-  uint64_t Grow(const Growth& growth);
+  // Rays of a pixel.
+  double Each() const { return samples_ ? samples_->count() : 1; }
+  double Grow(const Growth& growth);
   FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
-  void RenderSquares(size_t side, double speculation, std::vector<uint64_t>& done);
+  // Render squares of blocks, what is not `done` of them, and grow trees: for at most so much,
+  // which returns what it cost; and for what has been earned.
+  double Explore(size_t often, double horizon, double most_work, std::vector<uint64_t>& done);
+  void TrySquares(std::vector<uint64_t>& done);
   // In one of so many blocks a tile is booked.
-  size_t ProbedBlocks(uint32_t turn) const {
+  size_t ProbedBlocks() const {
     const size_t often = std::max<size_t>(1, BlockCount() / kMostProbed);
-    if (turn < kOftenDecided) return often;
+    if (plan_.decisions() < kOftenDecided) return kNewBlocks * often;
     return (plan_.SkipsAll() ? kIdleBlocks : kProbedBlocks) * often;
   }
 
@@ -188,20 +198,20 @@ void Blocks::ForBlocks(double from, double to, RayCounts& rays, Fn&& body) {
   }
 }
 
-void Blocks::RenderTask(const BlockTask& task, Wave wave, PacketWorkspace& workspace,
-                        PacketCounts& counts) {
-  if (wave == Wave::kClassical) {
+void Blocks::RenderTask(const BlockTask& task, std::optional<Asking> asking,
+                        PacketWorkspace& workspace, PacketCounts& counts) {
+  if (!asking) {
     RenderBlockWide(packets_.scene(), task, workspace, counts);
     return;
   }
   const SurfaceCache::Reader reader(surfaces_, SumError());
-  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, wave == Wave::kBooked, workspace,
-                       counts);
+  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, *asking, workspace, counts);
 }
 
-void Blocks::RenderWave(double from, double to, Wave wave, const TilesOf& tiles_of) {
-  wave = PaidFor(wave);
-  const bool asked = wave != Wave::kClassical;
+void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
+                        const TilesOf& tiles_of) {
+  asking = PaidFor(asking);
+  const bool asked = asking.has_value();
   std::vector<UseCounts> uses(BlockCount());
   RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
   ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
@@ -211,7 +221,7 @@ void Blocks::RenderWave(double from, double to, Wave wave, const TilesOf& tiles_
     const PacketTracer::Region region = RegionOf(block);
     const BlockTask task = {
         eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
-    RenderTask(task, wave, workspace, counts);
+    RenderTask(task, asking, workspace, counts);
     StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
   });
   if (samples_) return;
@@ -230,18 +240,17 @@ void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& 
   StoreOnce(region, once.done, workspace.uses(), each, frame_, uses);
 }
 
-void Blocks::RenderSamples(double from, double to, Wave wave) {
-  wave = PaidFor(wave);
+void Blocks::RenderSamples(double from, double to, std::optional<Asking> asking) {
+  asking = PaidFor(asking);
   const EyeRays eye_rays = eye_rays_.Divided(samples_->across(), samples_->down());
   const SampledFrame sampled = {
-      *samples_, eye_rays, options_.limits, packets_.sees_squares(), wave != Wave::kClassical,
-      frame_};
+      *samples_, eye_rays, options_.limits, packets_.sees_squares(), asking.has_value(), frame_};
   // At epsilon 0 every sample is evaluated.
   const bool evaluates_once = sampled.asked && SumError() > 0;
   std::vector<UseCounts> uses(BlockCount());
   const auto body = [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
     const auto render = [&](const BlockTask& task) {
-      RenderTask(task, wave, workspace, counts);
+      RenderTask(task, asking, workspace, counts);
       return workspace.uses();
     };
     OnceBlock once;
@@ -253,7 +262,7 @@ void Blocks::RenderSamples(double from, double to, Wave wave) {
   for (const UseCounts& counts : uses) AddSources(counts, sampled.asked, frame_.stats);
 }
 
-uint64_t Blocks::Grow(const Growth& growth) {
+double Blocks::Grow(const Growth& growth) {
   if (IsCancelled()) return 0;
   const StageTimer timer(frame_.stages.learn_ms);
   // Who cancels does not wait for what others would learn either.
@@ -263,68 +272,79 @@ uint64_t Blocks::Grow(const Growth& growth) {
     };
     pool_.ParallelFor(count, unless_cancelled, &frame_.stats.cpu_ms);
   };
-  const uint64_t cells = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, growth, loop);
-  frame_.stats.cells_tried += cells;
-  frame_.stats.cells_accepted += cells;
-  return cells;
+  const auto grown = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, growth, loop);
+  frame_.stats.cells_tried += grown.cells;
+  frame_.stats.cells_accepted += grown.cells;
+  return grown.work;
 }
 
-// Trees grow by what they earn: first for a small share of the frame's work, then, square by
-// square, for half of what the cells built so far are measured to save in the rest of the frame.
+// Trees grow for a small share of the frame's work, and by what they earn: half of what the cells
+// built so far are measured to save in the rest of the frame.
 void Blocks::RenderCached() {
-  const uint64_t trees = surfaces_.TreeCount();
-  // Who has decided often looks less often.
   const uint32_t turn = plan_.decisions();
-  const size_t probed = ProbedBlocks(turn);
+  const size_t probed = ProbedBlocks();
   const auto first_tile = [&](size_t block) {
     return (block + turn) % probed == 0 ? FirstTile(block) : 0;
   };
   const FramePlan::Booked first = Probe(0, 0.05, first_tile);
-  const double each = samples_ ? samples_->count() : 1;
-  const double share = each * static_cast<double>(kTilesOfBlock * probed);
+  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
   const double work =
-      each * kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
-  const double speculation = std::min(kSpeculation * work, share * first.promised / 2);
-  const uint64_t cells = Grow({share, kSureHorizon, speculation});
+      Each() * kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
+  const double promised = share * first.promised;
+  double purse = kLearningShare * work;
+  purse -= Grow({share, share, kSureHorizon, std::min(purse, promised / 2)});
   std::vector<uint64_t> done(BlockCount());
   for (size_t block = 0; block < done.size(); ++block) done[block] = first_tile(block);
-  // Trees that have just been planted have no cells.
-  const bool planted = surfaces_.TreeCount() != trees;
-  const bool promising = share * first.promised > kLeastPromise * work;
-  if ((cells > 0 || planted) && promising && plan_.WantsAny()) {
-    for (const size_t side : kSquareSides) RenderSquares(side, speculation, done);
+  if (plan_.HopesAny() && promised > kLeastPromise * work) {
+    if (promised > kLargePromise * work) {
+      const double most_work = std::min(promised / 4, kSureShare * work);
+      if (Explore(1, kSureHorizon, most_work, done) > 0) TrySquares(done);
+    } else {
+      purse -= Explore(kExploredBlocks, kLearningHorizon, purse, done);
+    }
   }
   if (samples_) {
-    RenderSamples(0.5, 1, Wave::kCached);
+    RenderSamples(0.5, 1, Asking::kPlanned);
   } else {
-    RenderWave(0.5, 1, Wave::kCached, [&](size_t block) { return kAllTiles & ~done[block]; });
+    RenderWave(0.5, 1, Asking::kPlanned, [&](size_t block) { return kAllTiles & ~done[block]; });
   }
-  Grow({1, kLearningHorizon, kLearningShare * work});
+  Grow({1, share, kLearningHorizon, purse});
 }
 
 FramePlan::Booked Blocks::Probe(double from, double to, const TilesOf& tiles_of) {
   const StageTimer timer(frame_.stages.probe_ms);
-  RenderWave(from, to, Wave::kBooked, tiles_of);
+  RenderWave(from, to, Asking::kBooked, tiles_of);
   return plan_.Decide();
 }
 
-// One tile of some is booked.
-void Blocks::RenderSquares(size_t side, double speculation, std::vector<uint64_t>& done) {
-  const double progress = static_cast<double>(side * side) / kTilesOfBlock;
-  const size_t probed = kProbedBlocks * ProbedBlocks(0);
-  const auto corner = [&](size_t block) {
-    return block % probed == 0 ? CornerOf(block, side) & ~done[block] : 0;
+double Blocks::Explore(size_t often, double horizon, double most_work,
+                       std::vector<uint64_t>& done) {
+  const uint32_t turn = plan_.decisions();
+  const auto square = [&](size_t block) {
+    return (block + turn) % often == 0 ? SquareOf(block, kExploredSide) : 0;
   };
-  const FramePlan::Booked booked = Probe(progress / 2, progress / 2, corner);
-  RenderWave(progress / 2, progress, Wave::kCached,
-             [&](size_t block) { return SquareOf(block, side) & ~corner(block) & ~done[block]; });
-  for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, side);
-  const double each = samples_ ? samples_->count() : 1;
-  const double left = each * static_cast<double>(kTilesOfBlock * probed) * (1 - progress);
-  // Before anything has been built there is nothing to measure.
-  const double earned = kReinvested * left * booked.saved;
-  const double budget = side == kSquareSides[0] ? std::max(earned, speculation) : earned;
-  Grow({each / progress, kSureHorizon, std::max(budget, 0.0)});
+  RenderWave(0.05, 0.1, Asking::kExploring,
+             [&](size_t block) { return square(block) & ~done[block]; });
+  for (size_t block = 0; block < done.size(); ++block) done[block] |= square(block);
+  const double weight = Each() * static_cast<double>(often) / ShareOf(kExploredSide);
+  const double booked = Each() * static_cast<double>(kTilesOfBlock * ProbedBlocks());
+  return Grow({weight, booked, horizon, most_work});
+}
+
+// One tile of some is booked.
+void Blocks::TrySquares(std::vector<uint64_t>& done) {
+  const size_t probed = ProbedBlocks();
+  const auto corner = [&](size_t block) {
+    return block % probed == 0 ? CornerOf(block, kTriedSide) & ~done[block] : 0;
+  };
+  const FramePlan::Booked booked = Probe(0.1, 0.15, corner);
+  RenderWave(0.15, 0.5, Asking::kPlanned, [&](size_t block) {
+    return SquareOf(block, kTriedSide) & ~corner(block) & ~done[block];
+  });
+  for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, kTriedSide);
+  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
+  const double earned = kReinvested * share * (1 - ShareOf(kTriedSide)) * booked.saved;
+  if (earned > 0) Grow({Each() / ShareOf(kTriedSide), share, kSureHorizon, earned});
 }
 
 }  // namespace

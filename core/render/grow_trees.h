@@ -26,18 +26,18 @@ inline constexpr size_t kBlockPackets = 64;
 // What has just been asked for, and what it may cost.
 struct Growth {
   double weight;     // shading points that one use stands for
+  double booked;     // and one that is booked
   double horizon;    // a cell is worth its price within so many requests like this one
   double most_work;  // what they may cost together: those that most points ask for come first
 };
 
-// Certifies the cells that pay for themselves, and returns how many.
-uint64_t GrowTrees(const Scene& scene, SurfaceCache& surfaces, FramePlan& plan,
-                   const Growth& growth, const ParallelLoop& loop);
+// Certifies the cells that pay for themselves.
+SurfaceCache::Grown GrowTrees(const Scene& scene, SurfaceCache& surfaces, FramePlan& plan,
+                              const Growth& growth, const ParallelLoop& loop);
 
 // Of a request's work (kRayWork for each of its rays, and what lights cost without trees), what may
-// be spent on cells before anything is known of what they save, and, at its end, on those that are
-// learnt for the requests to come.
-inline constexpr double kSpeculation = 0.03, kLearningShare = 0.03;
+// be spent on cells, beyond what they earn.
+inline constexpr double kLearningShare = 0.03;
 inline constexpr double kRayWork = 10;
 
 }  // namespace linetree

@@ -83,7 +83,7 @@ class RayBlocks {
   void TraceClassical();
   void TraceCached();
   template <class PacketsOf>
-  void TraceWave(bool booking, PacketsOf&& packets_of);
+  void TraceWave(Asking asking, PacketsOf&& packets_of);
   uint64_t Grow(const Growth& growth);
   void Store(std::span<const uint32_t> block, uint64_t packets, std::span<const RayResult> results);
   RayAnswer AnswerOf(const RayResult& result) const;
@@ -150,13 +150,13 @@ void RayBlocks::TraceClassical() {
 }
 
 template <class PacketsOf>
-void RayBlocks::TraceWave(bool booking, PacketsOf&& packets_of) {
+void RayBlocks::TraceWave(Asking asking, PacketsOf&& packets_of) {
   ForBlocks([&](std::span<const uint32_t> block, Bench& bench, PacketCounts& counts, size_t index) {
     const uint64_t packets = packets_of(index);
     if (packets == 0) return;
     const SurfaceCache::Reader reader(surfaces_, SumError());
     TraceCachedRaysWide(packets_.scene(), {rays_, hits_, block, bench.results, options_.limits},
-                        packets, reader, plan_, booking, bench.workspace, counts);
+                        packets, reader, plan_, asking, bench.workspace, counts);
     Store(block, packets, bench.results);
   });
 }
@@ -170,7 +170,7 @@ uint64_t RayBlocks::Grow(const Growth& growth) {
     };
     pool_.ParallelFor(count, unless_cancelled, &stats_.cpu_ms);
   };
-  const uint64_t cells = GrowTrees(scene(), surfaces_, plan_, growth, loop);
+  const uint64_t cells = GrowTrees(scene(), surfaces_, plan_, growth, loop).cells;
   stats_.cells_tried += cells;
   stats_.cells_accepted += cells;
   return cells;
@@ -178,7 +178,7 @@ uint64_t RayBlocks::Grow(const Growth& growth) {
 
 void RayBlocks::TraceCached() {
   if (rays_.size() < kLeastTeachingRays) {
-    TraceWave(false, [](size_t) { return kAllPackets; });
+    TraceWave(Asking::kExploring, [](size_t) { return kAllPackets; });
     return;
   }
   const uint64_t trees = surfaces_.TreeCount();
@@ -187,23 +187,24 @@ void RayBlocks::TraceCached() {
   const auto first = [turn](size_t block) {
     return turn < kOftenDecided || (block + turn) % kProbedBlocks == 0 ? FirstPacket(block) : 0;
   };
-  TraceWave(true, first);
+  TraceWave(Asking::kBooked, first);
   const FramePlan::Booked booked = plan_.Decide();
   const double share = kBlockPackets * (turn < kOftenDecided ? 1.0 : kProbedBlocks);
   const double work = kRayWork * static_cast<double>(rays_.size()) + booked.classical * share;
-  const double speculation = std::min(kSpeculation * work, share * booked.promised / 2);
-  const uint64_t cells = Grow({kBlockPackets, kSureHorizon, speculation});
+  const double speculation = std::min(kLearningShare * work, share * booked.promised / 2);
+  const uint64_t cells = Grow({kBlockPackets, share, kSureHorizon, speculation});
   const bool settled = cells == 0 && surfaces_.TreeCount() == trees;
   if (settled || !plan_.WantsAny()) {
-    TraceWave(false, [&](size_t block) { return kAllPackets & ~first(block); });
+    TraceWave(Asking::kExploring, [&](size_t block) { return kAllPackets & ~first(block); });
   } else {
-    TraceWave(false, [&](size_t block) { return SecondPackets(block) & ~first(block); });
-    Grow({static_cast<double>(kBlockPackets) / kPacketsOfSecondWave, kSureHorizon,
+    TraceWave(Asking::kExploring,
+              [&](size_t block) { return SecondPackets(block) & ~first(block); });
+    Grow({static_cast<double>(kBlockPackets) / kPacketsOfSecondWave, share, kSureHorizon,
           kReinvested * share * std::max(booked.saved, 0.0)});
-    TraceWave(false,
+    TraceWave(Asking::kExploring,
               [&](size_t block) { return kAllPackets & ~SecondPackets(block) & ~first(block); });
   }
-  Grow({1, kLearningHorizon, kLearningShare * work});
+  Grow({1, share, kLearningHorizon, kLearningShare * work});
 }
 
 RayAnswer RayBlocks::AnswerOf(const RayResult& result) const {

@@ -27,17 +27,22 @@ constexpr double kSweepReach = 4;
 // certainly lie: a hundred roundings of the products that decide it.
 constexpr double kFlat = 0x1p-46;
 
-// conv(points), swept along a direction or not, relative to one of its points.
+// conv(points), or of balls about them, swept along a direction or not, relative to one point.
 class Bundle {
  public:
-  Bundle(std::span<const Vec3d> points, const Vec3d* sweep, const Shape& shape)
-      : points_(points), sweep_(sweep), origin_(points[0]) {
+  // No radii: points; no sweep: not swept.
+  Bundle(std::span<const Vec3d> points, std::span<const double> radii, const Vec3d* sweep,
+         const Shape& shape)
+      : points_(points), radii_(radii), sweep_(sweep), origin_(points[0]) {
     Vec3d sum;
     for (const Vec3d& p : points) {
       const Vec3d x = p - origin_;
       reach_ = std::max(reach_, std::abs(x.x) + std::abs(x.y) + std::abs(x.z));
       sum = sum + x;
     }
+    double widest = 0;
+    for (const double r : radii) widest = std::max(widest, r);
+    reach_ += widest;
     middle_ = sum * (1 / static_cast<double>(points.size()));
     reach_ += Reach(shape, origin_);
     if (sweep_) far_ = *sweep_ * (kSweepReach * reach_);
@@ -56,6 +61,7 @@ class Bundle {
 
   // Farthest point; the sweep counts as far as its stand-in goes.
   Vec3d Farthest(const Vec3d& n) const {
+    if (!radii_.empty()) return FarthestOfBalls(n);
     Vec3d farthest;
     double most = -Box3::kInf;
     for (const Vec3d& p : points_) {
@@ -76,17 +82,34 @@ class Bundle {
   }
   bool IsBoundedAlong(const Vec3d& n) const { return !sweep_ || Dot(n, *sweep_) <= -kLean; }
 
+  // For n of unit length.
   double Most(const Vec3d& n) const {
     double most = -Box3::kInf;
-    for (const Vec3d& p : points_) {
-      const double along = Dot(n, p - origin_);
+    for (size_t i = 0; i < points_.size(); ++i) {
+      const double radius = radii_.empty() ? 0 : radii_[i];
+      const double along = Dot(n, points_[i] - origin_) + radius;
       if (!(along <= most)) most = along;  // what is not a number stays, and separates nothing
     }
     return most;
   }
 
  private:
+  Vec3d FarthestOfBalls(const Vec3d& n) const {
+    const double length = Length(n);
+    size_t farthest = 0;
+    double most = -Box3::kInf;
+    for (size_t i = 0; i < points_.size(); ++i) {
+      const double along = Dot(n, points_[i] - origin_) + length * radii_[i];
+      if (along > most) {
+        most = along;
+        farthest = i;
+      }
+    }
+    return points_[farthest] - origin_ + n * (radii_[farthest] / length);
+  }
+
   std::span<const Vec3d> points_;
+  std::span<const double> radii_;
   const Vec3d* sweep_;
   Vec3d origin_, middle_, far_;
   double reach_ = 0;
@@ -199,13 +222,19 @@ bool Search(const Bundle& bundle, const Shape& shape, double margin) {
 
 bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin) {
   LT_CHECK(!points.empty());
-  return Search(Bundle(points, nullptr, shape), shape, margin);
+  return Search(Bundle(points, {}, nullptr, shape), shape, margin);
 }
 
 bool CertainlyApart(std::span<const Vec3d> points, const Vec3d& direction, const Shape& shape,
                     double margin) {
   LT_CHECK(!points.empty());
-  return Search(Bundle(points, &direction, shape), shape, margin);
+  return Search(Bundle(points, {}, &direction, shape), shape, margin);
+}
+
+bool CertainlyApart(std::span<const Vec3d> centers, std::span<const double> radii,
+                    const Shape& shape, double margin) {
+  LT_CHECK(!centers.empty() && centers.size() == radii.size());
+  return Search(Bundle(centers, radii, nullptr, shape), shape, margin);
 }
 
 }  // namespace linetree

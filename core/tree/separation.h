@@ -27,6 +27,10 @@ bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double ma
 bool CertainlyApart(std::span<const Vec3d> points, const Vec3d& direction, const Shape& shape,
                     double margin);
 
+// The same for the hull of balls, of radii >= 0.
+bool CertainlyApart(std::span<const Vec3d> centers, std::span<const double> radii,
+                    const Shape& shape, double margin);
+
 inline constexpr int kMaxProposals = 32;
 
 }  // namespace linetree

@@ -3,6 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+
+#include "core/audit/random_stream.h"
+
 namespace linetree {
 namespace {
 
@@ -78,6 +87,83 @@ TEST(AuditTest, FilesAreAuditedToo) {
   const AuditReport report = Audited(options, 2);
   EXPECT_EQ(report.rows[0].group, "room.textproto");
   EXPECT_GT(report.total.queries, 3000u);
+}
+
+// Spoils answers along rays that depend on nothing but the ray.
+class Spoiler : public Answerer {
+ public:
+  absl::StatusOr<RayBatch> TraceRays(SceneHost& host, const std::vector<Ray>& rays,
+                                     const RenderOptions& options, WorkerPool& pool) override {
+    auto batch = host.TraceRays(rays, options, pool);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const auto bits = std::bit_cast<uint64_t>(rays[i].direction.x);
+      if (MixBits(bits) % 499 == 0) batch->answers[i].radiance.g += 10;
+    }
+    return batch;
+  }
+};
+
+TEST(AuditTest, ViolationsComeInTheOrderOfTheirScenes) {
+  const auto lines = [](int threads) {
+    WorkerPool pool(threads);
+    Spoiler spoiler;
+    const auto report = RunAudit(AllFamilies(14'000), spoiler, pool);
+    std::vector<std::string> text;
+    for (const Violation& violation : report->violations) text.push_back(ToLine(violation));
+    return text;
+  };
+  const auto one = lines(1);
+  EXPECT_EQ(one.size(), AuditOptions{}.max_violations);
+  EXPECT_EQ(one, lines(3));
+}
+
+// Lets no scene go on before a second one has begun.
+class Rendezvous : public Answerer {
+ public:
+  absl::StatusOr<Frame> RenderFrame(SceneHost& host, const FrameRequest& request,
+                                    WorkerPool& pool) override {
+    std::unique_lock lock(mutex_);
+    scenes_.insert(&host);
+    changed_.notify_all();
+    const bool met =
+        changed_.wait_for(lock, std::chrono::minutes(1), [this] { return scenes_.size() > 1; });
+    if (!met) return absl::DeadlineExceededError("no second scene");
+    lock.unlock();
+    return host.RenderFrame(request, pool);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<const SceneHost*> scenes_;  // guarded by mutex_
+};
+
+TEST(AuditTest, ThreadsAuditScenesSideBySide) {
+  WorkerPool pool(2);
+  Rendezvous rendezvous;
+  std::vector<double> shares;
+  const auto report = RunAudit(AllFamilies(14'000), rendezvous, pool,
+                               [&](double share) { shares.push_back(share); });
+  ASSERT_TRUE(report.ok()) << report.status();
+  ASSERT_EQ(shares.size(), report->scenes);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1);
+}
+
+class Failing : public Answerer {
+ public:
+  absl::StatusOr<Frame> RenderFrame(SceneHost&, const FrameRequest&, WorkerPool&) override {
+    return absl::InternalError("as planned");
+  }
+};
+
+TEST(AuditTest, WhatTheAnswererReturnsEndsTheAudit) {
+  for (const int threads : {1, 3}) {
+    WorkerPool pool(threads);
+    Failing failing;
+    EXPECT_EQ(RunAudit(AllFamilies(14'000), failing, pool).status(),
+              absl::InternalError("as planned"));
+  }
 }
 
 TEST(AuditTest, NothingToAuditIsAnError) {

@@ -152,10 +152,10 @@ TEST_F(SurfaceCacheTest, ACancelledRefinementKeepsWhatItBuilt) {
 }
 
 // Spheres cost more than planes.
-double PriceOf(size_t object) { return object < 2 ? 7 : 30; }
+double PriceOf(size_t object, const CellLights*) { return object < 2 ? 7 : 30; }
 
 TEST_F(SurfaceCacheTest, WorkStaysWithinItsBudget) {
-  const std::function<double(size_t)> price = PriceOf;
+  const SurfaceCache::Thrift::Price price = PriceOf;
   double largest = 0;
   for (const double budget : {0.0, 6.9, 7.0, 50.0, 400.0, 3000.0}) {
     for (const double weight : {0.01, 100.0}) {
@@ -166,17 +166,18 @@ TEST_F(SurfaceCacheTest, WorkStaysWithinItsBudget) {
         SurfaceCache::Thrift thrift;
         thrift.price = &price;
         thrift.most_work = budget;
-        const uint64_t certified = cache.Refine(weight, kSerial, thrift);
+        const SurfaceCache::Grown grown = cache.Refine(weight, kSerial, thrift);
         const std::vector<TreeSize> after = cache.TreeSizes();
         double work = 0;
         uint64_t cells = 0;
         for (size_t object = 0; object < after.size(); ++object) {
           const uint64_t old = object < before.size() ? before[object].cells : 0;
-          work += static_cast<double>(after[object].cells - old) * PriceOf(object);
+          work += static_cast<double>(after[object].cells - old) * PriceOf(object, nullptr);
           cells += after[object].cells - old;
         }
         ASSERT_LE(work, budget) << "round " << round << ", weight " << weight;
-        ASSERT_EQ(cells, certified);
+        ASSERT_EQ(cells, grown.cells);
+        ASSERT_NEAR(work, grown.work, 1e-6);
         largest = std::max(largest, budget > 0 ? work / budget : 0);
       }
     }
@@ -184,8 +185,29 @@ TEST_F(SurfaceCacheTest, WorkStaysWithinItsBudget) {
   EXPECT_GT(largest, 0.9) << "divisions spend what there is";
 }
 
+// A cell is dear where nothing is known of the one around it, and cheap below.
+TEST_F(SurfaceCacheTest, PricesGoByWhatIsKnownAlready) {
+  const SurfaceCache::Thrift::Price price = [](size_t, const CellLights* parent) {
+    return parent == nullptr ? 100.0 : 1.0 + static_cast<double>(parent->objects.size());
+  };
+  SurfaceCache cache(tracer_, 10'000'000);
+  Use(cache, 1, 500);
+  cache.Refine(1, kSerial);
+  Use(cache, 1, 500);
+  SurfaceCache::Thrift thrift;
+  thrift.price = &price;
+  thrift.most_work = 100;
+  const SurfaceCache::Grown root = cache.Refine(100, kSerial, thrift);
+  EXPECT_EQ(root.cells, 1u);
+  EXPECT_DOUBLE_EQ(root.work, 100);
+  Use(cache, 1, 500);
+  const SurfaceCache::Grown parts = cache.Refine(100, kSerial, thrift);
+  EXPECT_GT(parts.cells, 1u) << "a root costs 100, parts of the floor do not";
+  EXPECT_LE(parts.work, 100);
+}
+
 TEST_F(SurfaceCacheTest, TheBudgetGoesToTheCellsThatMostPointsAskFor) {
-  const std::function<double(size_t)> price = [](size_t) { return 1.0; };
+  const SurfaceCache::Thrift::Price price = [](size_t, const CellLights*) { return 1.0; };
   SurfaceCache cache(tracer_, 10'000'000);
   Use(cache, 1, 500);
   cache.Refine(1, kSerial);
@@ -194,12 +216,12 @@ TEST_F(SurfaceCacheTest, TheBudgetGoesToTheCellsThatMostPointsAskFor) {
   SurfaceCache::Thrift thrift;
   thrift.price = &price;
   thrift.most_work = 1;
-  EXPECT_EQ(cache.Refine(100, kSerial, thrift), 1u);
+  EXPECT_EQ(cache.Refine(100, kSerial, thrift).cells, 1u);
   EXPECT_EQ(cache.TreeSizes()[0].cells, 1u);
 }
 
 TEST_F(SurfaceCacheTest, WithoutAPriceOrALimitThereIsNoBudget) {
-  const std::function<double(size_t)> price = PriceOf;
+  const SurfaceCache::Thrift::Price price = PriceOf;
   SurfaceCache::Thrift free, unlimited;
   free.most_work = 0;
   unlimited.price = &price;
@@ -211,7 +233,8 @@ TEST_F(SurfaceCacheTest, WithoutAPriceOrALimitThereIsNoBudget) {
     EXPECT_EQ(certified > 0, round > 0);
     for (SurfaceCache& cache : caches) {
       Use(cache, round, 500);
-      EXPECT_EQ(cache.Refine(100, kSerial, &cache == &caches[0] ? free : unlimited), certified);
+      EXPECT_EQ(cache.Refine(100, kSerial, &cache == &caches[0] ? free : unlimited).cells,
+                certified);
     }
   }
   EXPECT_GT(plain.CellCount(), 100u) << "divisions among them";

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "core/trace/shade.h"
+#include "tests/support/every_target.h"
 #include "tests/support/random_scene.h"
 
 namespace linetree {
@@ -95,6 +98,40 @@ TEST(DiffuseSummer, SumsAreWithinTheirBounds) {
       EXPECT_GT(seen.points, 300);
       EXPECT_GT(seen.largest, 0.02) << "a bound that wide says nothing";
     }
+  }
+}
+
+// The sums of some cells of the object, all of whose lights are on.
+std::vector<DiffuseSum> SumsOf(const Scene& scene, DiffuseSummer::Lanes lanes) {
+  const DiffuseSummer summer(scene, lanes);
+  const SurfaceChart chart(scene.objects[0]);
+  std::vector<DiffuseSum> sums;
+  for (int patch = 0; patch < 4; ++patch) {
+    for (uint32_t i = 0; i < 32; ++i) {
+      CellLights lights = AllOn(scene);
+      summer.AddSums(0, chart, patch, {5, i, 31 - i}, lights);
+      sums.push_back(lights.sums[0] ? *lights.sums[0] : DiffuseSum{});
+      if (lights.sums[0] == nullptr) sums.back().spread = -1;
+    }
+  }
+  return sums;
+}
+
+TEST(DiffuseSummer, SumsOnCurvesAreTheSameOnEveryTarget) {
+  test::Random random(6);
+  for (const test::ShapeKind kind : {test::ShapeKind::kSphere, test::ShapeKind::kFrustum}) {
+    const Scene scene = LitObject(kind, random);
+    const auto scalar = SumsOf(scene, DiffuseSummer::Lanes::kScalar);
+    EXPECT_GT(std::count_if(scalar.begin(), scalar.end(),
+                            [](const DiffuseSum& sum) { return sum.spread >= 0; }),
+              8);
+    test::ForEveryTarget([&](const char* target) {
+      const auto simd = SumsOf(scene, DiffuseSummer::Lanes::kSimd);
+      for (size_t i = 0; i < scalar.size(); ++i) {
+        EXPECT_EQ(simd[i].spread, scalar[i].spread) << target;
+        EXPECT_EQ(simd[i].value, scalar[i].value) << target;
+      }
+    });
   }
 }
 

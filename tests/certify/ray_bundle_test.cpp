@@ -108,5 +108,73 @@ TEST(RayBundle, CandidatesHoldAllThatIsMet) {
   EXPECT_LT(kept, 60 * 20 * 6);  // not simply everything
 }
 
+// Segments in pairs: point m of the one cloud goes to point m of the other, what lies between to
+// what lies between.
+struct Pairs {
+  PointCloud from, to;
+
+  PointCloud At(double share) const {
+    PointCloud cloud;
+    for (size_t m = 0; m < 16; ++m) {
+      cloud.points[m] = from.points[m] * (1 - share) + to.points[m] * share;
+    }
+    cloud.slack = from.slack * (1 - share) + to.slack * share;
+    return cloud;
+  }
+};
+Pairs RandomPairs(Random& random) {
+  const double size = random.LogUniform(1e-2, 1);
+  Pairs pairs{RandomCloud(random, random.InCube(4), size),
+              RandomCloud(random, random.InCube(4), size)};
+  // Crossing on their way, or all alike.
+  const double turn = random.Below(2) == 0 ? -1 : 1;
+  for (size_t m = 0; m < 16; ++m) {
+    pairs.to.points[m] = pairs.to.points[0] + (pairs.from.points[m] - pairs.from.points[0]) * turn;
+  }
+  return pairs;
+}
+
+// Whatever segments meet is among the candidates; those that no segment can meet are fewer than
+// without sections.
+TEST(RayBundle, SectionsTakeAwayOnlyWhatIsNotMet) {
+  Random random(4);
+  int met = 0, kept = 0, kept_without = 0;
+  for (int s = 0; s < 100; ++s) {
+    const Scene scene = RandomScene(random, 14, 3);
+    const Tracer tracer(scene);
+    const CandidateSearch search(tracer);
+    for (int i = 0; i < 20; ++i) {
+      const Pairs pairs = RandomPairs(random);
+      const auto at = [&](double share) { return pairs.At(share); };
+      const RayBundle bundle(scene, search, RayStart(), pairs.from, pairs.to, at);
+      const RayBundle plain(scene, search, RayStart(), pairs.from, pairs.to);
+      const std::vector<int32_t> candidates = bundle.Candidates(kNoObject, nullptr);
+      const std::vector<int32_t> all = plain.Candidates(kNoObject, nullptr);
+      ASSERT_TRUE(std::includes(all.begin(), all.end(), candidates.begin(), candidates.end()));
+      kept += static_cast<int>(candidates.size());
+      kept_without += static_cast<int>(all.size());
+      for (int n = 0; n < 60; ++n) {
+        std::array<double, 16> weights{};
+        double sum = 0;
+        for (double& w : weights) sum += w = random.Below(3) == 0 ? random.LogUniform(1e-3, 1) : 0;
+        if (sum == 0) continue;
+        Vec3d begin, end;
+        for (size_t m = 0; m < 16; ++m) {
+          begin = begin + pairs.from.points[m] * (weights[m] / sum);
+          end = end + pairs.to.points[m] * (weights[m] / sum);
+        }
+        begin = begin + random.Direction() * (pairs.from.slack * random.Unit());
+        end = end + random.Direction() * (pairs.to.slack * random.Unit());
+        const Hit hit = tracer.Intersect(begin, end - begin, RayStart());
+        if (!hit.IsHit() || hit.t > 1) continue;
+        ++met;
+        ASSERT_TRUE(std::binary_search(candidates.begin(), candidates.end(), hit.object));
+      }
+    }
+  }
+  EXPECT_GT(met, 2000);
+  EXPECT_LT(kept, kept_without - kept_without / 50);
+}
+
 }  // namespace
 }  // namespace linetree::test

@@ -5,16 +5,42 @@
 namespace linetree {
 namespace {
 
-TEST(FramePlanTest, WhatIsNotKnownIsAsked) {
+// Of one packet; where `spent` is not given, all is known.
+PacketWork Work(uint32_t asked, uint32_t classical) { return {16, asked, classical, asked, true}; }
+PacketWork Work(uint32_t asked, uint32_t classical, uint32_t spent) {
+  return {16, asked, classical, spent, false};
+}
+
+TEST(FramePlanTest, WhatIsNotKnownMayGrowButIsNotAsked) {
   const FramePlan plan(3);
   EXPECT_FALSE(plan.Skips(0));
+  EXPECT_FALSE(plan.Pays(0));
   EXPECT_EQ(plan.CountSkipped(), 0u);
+}
+
+TEST(FramePlanTest, TreesAreAskedOnceTheyPayAsTheyAre) {
+  FramePlan plan(2);
+  plan.Book(0, Work(200, 1000, 1100));
+  EXPECT_DOUBLE_EQ(plan.Decide().promised, 800);
+  EXPECT_FALSE(plan.Skips(0));
+  EXPECT_FALSE(plan.Pays(0));
+  EXPECT_TRUE(plan.HopesAny());
+  EXPECT_FALSE(plan.PaysAny());
+  for (int i = 0; i < 3; ++i) plan.Book(0, Work(200, 1000));
+  EXPECT_DOUBLE_EQ(plan.Decide().saved, 0) << "they were not asked yet";
+  EXPECT_TRUE(plan.Pays(0));
+  EXPECT_TRUE(plan.PaysAny());
+  EXPECT_FALSE(plan.HopesAny());
+  plan.Book(0, Work(200, 1000));
+  EXPECT_DOUBLE_EQ(plan.Decide().saved, 800);
+  plan.Skip(0);
+  EXPECT_FALSE(plan.Pays(0));
 }
 
 TEST(FramePlanTest, TreesThatCostMoreThanTheySaveAreSkipped) {
   FramePlan plan(3);
-  plan.Book(0, 16, 300, 200);
-  plan.Book(1, 16, 200, 1000);
+  plan.Book(0, Work(300, 200));
+  plan.Book(1, Work(200, 1000));
   plan.Decide();
   EXPECT_TRUE(plan.Skips(0));
   EXPECT_FALSE(plan.Skips(1));
@@ -23,21 +49,21 @@ TEST(FramePlanTest, TreesThatCostMoreThanTheySaveAreSkipped) {
 
 TEST(FramePlanTest, ObjectsNobodyHasSeenAreTakenForUsualOnes) {
   FramePlan plan(3);
-  plan.Book(0, 16, 300, 200);
+  plan.Book(0, Work(300, 200));
   plan.Decide();
   EXPECT_TRUE(plan.Skips(2));
-  plan.Book(1, 16, 200, 2000);
+  plan.Book(1, Work(200, 2000));
   plan.Decide();
   EXPECT_FALSE(plan.Skips(2));
 }
 
 TEST(FramePlanTest, WhatIsOldCountsLess) {
   FramePlan plan(1);
-  plan.Book(0, 16, 1000, 100);
+  plan.Book(0, Work(1000, 100));
   plan.Decide();
   EXPECT_TRUE(plan.Skips(0));
   for (int i = 0; i < 8; ++i) {
-    plan.Book(0, 16, 100, 300);
+    plan.Book(0, Work(100, 300));
     plan.Decide();
   }
   EXPECT_FALSE(plan.Skips(0));
@@ -45,7 +71,7 @@ TEST(FramePlanTest, WhatIsOldCountsLess) {
 
 TEST(FramePlanTest, AlwaysSkipsNothing) {
   FramePlan plan(2, /*always=*/true);
-  plan.Book(0, 16, 1000, 1);
+  plan.Book(0, Work(1000, 1));
   plan.Decide();
   EXPECT_EQ(plan.CountSkipped(), 0u);
 }

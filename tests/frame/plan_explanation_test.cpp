@@ -7,23 +7,28 @@
 namespace linetree {
 namespace {
 
+// Of one packet in cells that are all known.
+PacketWork Work(uint32_t asked, uint32_t classical) { return {16, asked, classical, asked, true}; }
+
 TEST(PlanExplanationTest, SaysWhatThePlannerDoesAndWhy) {
-  FramePlan plan(5);
-  plan.Book(0, 16, 160, 800);
-  plan.Book(1, 16, 320, 160);
-  plan.Book(2, 16, 160, 800);
-  plan.Book(3, 16, 150, 160);  // less than kLeastSaving
+  FramePlan plan(6);
+  plan.Book(0, Work(160, 800));
+  plan.Book(1, Work(320, 160));
+  plan.Book(2, Work(160, 800));
+  plan.Book(3, Work(150, 160));  // less than kLeastSaving
+  plan.Book(5, {16, 200, 1000, 1100, false});
   plan.Decide();
   plan.Skip(2);
-  const std::vector<TreeSize> trees = {{7, 700}, {}, {}, {}, {}};
+  const std::vector<TreeSize> trees = {{7, 700}, {}, {}, {}, {}, {}};
   const std::vector<ObjectPlan> objects = ExplainPlan(plan, trees);
-  ASSERT_EQ(objects.size(), 5u);
-  const PlanReason reasons[] = {PlanReason::kPays, PlanReason::kCostsMore, PlanReason::kTooSmall,
-                                PlanReason::kCostsMore, PlanReason::kUnseen};
+  ASSERT_EQ(objects.size(), 6u);
+  const PlanReason reasons[] = {PlanReason::kPays,     PlanReason::kCostsMore,
+                                PlanReason::kTooSmall, PlanReason::kCostsMore,
+                                PlanReason::kUnseen,   PlanReason::kGrowing};
   for (size_t i = 0; i < objects.size(); ++i) {
     EXPECT_EQ(objects[i].object, i);
     EXPECT_EQ(objects[i].reason, reasons[i]) << i;
-    EXPECT_EQ(objects[i].asked, !plan.Skips(i)) << i;
+    EXPECT_EQ(objects[i].asked, plan.Pays(i)) << i;
   }
   EXPECT_TRUE(objects[0].asked);
   EXPECT_FALSE(objects[1].asked);
@@ -44,7 +49,7 @@ TEST(PlanExplanationTest, ASkipWithoutAnyPointsIsForLackOfPoints) {
 
 TEST(PlanExplanationTest, AlwaysIsAReasonOfItsOwn) {
   FramePlan plan(1, /*always=*/true);
-  plan.Book(0, 16, 1000, 1);
+  plan.Book(0, Work(1000, 1));
   plan.Decide();
   const ObjectPlan object = ExplainPlan(plan, std::vector<TreeSize>(1))[0];
   EXPECT_TRUE(object.asked);

@@ -41,9 +41,9 @@ TEST(WorkQueueTest, AFullQueueRefusesUntilThereIsRoom) {
 }
 
 TEST(WorkQueueTest, SeveralThreadsWorkAtATime) {
-  WorkQueue queue(2, 10);
   // Each waits for the other to have begun: with one thread this would never end.
   std::promise<void> a_runs, b_runs, both_done;
+  WorkQueue queue(2, 10);  // dies first, with its jobs
   queue.Submit([&] {
     a_runs.set_value();
     b_runs.get_future().wait();

@@ -223,6 +223,81 @@ TEST(CertainlyApart, FindsTheNormalOfTwoEdges) {
   }
 }
 
+// Balls, some of them points.
+std::vector<double> RandomRadii(Random& random, size_t count, double size) {
+  std::vector<double> radii(count);
+  for (double& r : radii) r = random.Below(3) == 0 ? 0 : size * random.LogUniform(1e-3, 2);
+  return radii;
+}
+// A point of the hull of balls, one time in three of one ball.
+Vec3d InBalls(const Points& centers, const std::vector<double>& radii, Random& random) {
+  Vec3d sum;
+  double weights = 0, radius = 0;
+  const int only = random.Below(3) == 0 ? random.Below(static_cast<int>(centers.size())) : -1;
+  for (size_t i = 0; i < centers.size(); ++i) {
+    const double weight = only < 0                      ? -std::log(1 - random.Unit())
+                          : only == static_cast<int>(i) ? 1.0
+                                                        : 0.0;
+    sum = sum + centers[i] * weight;
+    radius += radii[i] * weight;
+    weights += weight;
+  }
+  return (sum + random.Direction() * (radius * random.Unit())) * (1 / weights);
+}
+
+TEST(CertainlyApartBalls, IsNeverSaidOfWhatMeets) {
+  for (const ShapeKind kind : kShapeKinds) {
+    Random random(kSeed);
+    SCOPED_TRACE(testing::Message() << NameOf(kind) << ", seed " << kSeed);
+    for (int k = 0; k < 20000; ++k) {
+      Pair pair = PairAt(kind, random, 0, k % 2 == 0 ? 3 : 1e6);
+      const auto radii = RandomRadii(random, pair.points.size(), pair.size);
+      const Vec3d shift = InShape(pair.shape, random) - InBalls(pair.points, radii, random);
+      for (Vec3d& p : pair.points) p = p + shift;
+      ASSERT_FALSE(CertainlyApart(pair.points, radii, pair.shape, RoundingOf(pair))) << k;
+    }
+  }
+}
+
+// The distance is the gap by construction: any larger margin is refused, and a smaller one is
+// recognised almost always.
+TEST(CertainlyApartBalls, KeepsTheMarginAndNoMore) {
+  for (const ShapeKind kind : kShapeKinds) {
+    Random random(kSeed);
+    SCOPED_TRACE(testing::Message() << NameOf(kind) << ", seed " << kSeed);
+    int recognised = 0;
+    constexpr int kCount = 3000;
+    for (int k = 0; k < kCount; ++k) {
+      const double gap = random.LogUniform(1e-3, 1);
+      Pair pair = PairAt(kind, random, 0, 3);
+      const double distance = gap * pair.size;
+      const auto radii = RandomRadii(random, pair.points.size(), pair.size);
+      size_t farthest = 0;
+      const auto along = [&](size_t i) { return Dot(pair.n, pair.points[i]) + radii[i]; };
+      for (size_t i = 1; i < radii.size(); ++i)
+        farthest = along(i) > along(farthest) ? i : farthest;
+      const Vec3d tip = pair.points[farthest] + pair.n * radii[farthest];
+      for (Vec3d& p : pair.points) p = p + (pair.contact - pair.n * distance - tip);
+      const double rounding = 2 * RoundingOf(pair);
+      ASSERT_FALSE(CertainlyApart(pair.points, radii, pair.shape, distance + rounding)) << k;
+      recognised += CertainlyApart(pair.points, radii, pair.shape, 0.9 * distance);
+    }
+    EXPECT_GE(Share(recognised, kCount), 0.99);
+  }
+}
+
+TEST(CertainlyApartBalls, OfRadiusZeroArePoints) {
+  Random random(kSeed);
+  for (int k = 0; k < 5000; ++k) {
+    const ShapeKind kind = kShapeKinds[static_cast<size_t>(k) % std::size(kShapeKinds)];
+    const Pair pair = PairAt(kind, random, random.LogUniform(1e-3, 1), 3);
+    const std::vector<double> none(pair.points.size(), 0.0);
+    const double margin = pair.size * random.LogUniform(1e-3, 1);
+    EXPECT_EQ(CertainlyApart(pair.points, none, pair.shape, margin),
+              CertainlyApart(pair.points, pair.shape, margin));
+  }
+}
+
 // Half infinite: the points of the hull carry the shape away from themselves, or not.
 TEST(CertainlyApartSwept, IsNeverSaidOfWhatMeets) {
   for (const ShapeKind kind : kShapeKinds) {

@@ -1,0 +1,36 @@
+// The diffuse light of one light after the other on a cell of a curved surface, with bounds, from
+// corner jets of dimension 2: curved_cell-inl.h.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/certify/jet_shape.h"
+#include "core/scene/scene.h"
+#include "core/tree/surface_chart.h"
+
+namespace linetree {
+
+// max(0, n.l) over a cell.
+struct CurvedTerm {
+  bool is_known = false;
+  double error = 0;  // of bilinear interpolation between the corners
+  double least = 0, most = 0;
+  std::array<double, 4> corners{};
+};
+
+// A cell of a sphere or of a frustum's lateral surface, and the lights that are asked for.
+struct CurvedTask {
+  const Scene& scene;
+  const JetShape& shape;
+  int patch;
+  const SurfaceCell& cell;
+  std::span<const size_t> lights;
+};
+
+// One term for every light; false: the surface does not have a normal everywhere on the cell. Both
+// say the same, bit by bit; the one without SIMD is the plain twin.
+bool FindCurvedTermsScalar(const CurvedTask& task, CurvedTerm* terms);
+bool FindCurvedTermsSimd(const CurvedTask& task, CurvedTerm* terms);
+
+}  // namespace linetree
