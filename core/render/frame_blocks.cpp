@@ -1,3 +1,5 @@
+#include "core/render/frame_blocks.h"
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -9,7 +11,6 @@
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
-#include "core/render/frame_blocks.h"
 #include "core/render/grow_trees.h"
 #include "core/render/sample_blocks.h"
 #include "core/render/sample_mean.h"
@@ -135,7 +136,7 @@ class Blocks {
   std::optional<Asking> PaidFor(std::optional<Asking> asking) const {
     return asking == Asking::kPlanned && !plan_.PaysAny() ? std::nullopt : asking;
   }
-  // Samples of a pixel.
+  // Rays of a pixel.
   double Each() const { return samples_ ? samples_->count() : 1; }
   double Grow(const Growth& growth);
   FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
@@ -210,6 +211,7 @@ void Blocks::RenderTask(const BlockTask& task, std::optional<Asking> asking,
 void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
                         const TilesOf& tiles_of) {
   asking = PaidFor(asking);
+  const bool asked = asking.has_value();
   std::vector<UseCounts> uses(BlockCount());
   RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
   ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
@@ -220,10 +222,10 @@ void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
     const BlockTask task = {
         eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
     RenderTask(task, asking, workspace, counts);
-    StoreSources(region, tiles, workspace.uses(), asking.has_value(), frame_, uses[block]);
+    StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
   });
   if (samples_) return;
-  for (const UseCounts& counts : uses) AddSources(counts, asking.has_value(), frame_.stats);
+  for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
 }
 
 void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts,
