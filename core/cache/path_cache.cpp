@@ -25,48 +25,12 @@ struct PathCache::Group {
   std::unique_ptr<const CellPaths> paths{};  // the result
 };
 
-namespace {
-
-// A ray inside a transparent solid stays in its bounds until it leaves, so that it can meet nothing
-// else before but what comes near them: by more than the rounding of any crossing in the scene.
-std::vector<int32_t> InsideOf(const Tracer& tracer, int object) {
-  const Scene& scene = tracer.scene();
-  const Object& solid = scene.objects[static_cast<size_t>(object)];
-  if (IsBlack(scene.MaterialOf(object).transmit) || !IsSolid(solid.shape)) return {};
-  const double clearance = ClearanceOf(solid.bounds) + ClearanceOf(scene.WorldBounds());
-  Box3 near = solid.bounds;
-  for (int axis = 0; axis < 3; ++axis) {
-    near.min[axis] -= clearance;
-    near.max[axis] += clearance;
-  }
-  std::vector<int32_t> inside;
-  const auto consider = [&](int other) {
-    const Box3& bounds = scene.objects[static_cast<size_t>(other)].bounds;
-    if (near.Overlaps(bounds)) inside.push_back(other);
-    return inside.size() <= kMaxCandidates;
-  };
-  if (tracer.bvh() != nullptr) {
-    tracer.bvh()->ForEachOverlap([&](const Box3& box) { return near.Overlaps(box); }, consider);
-    std::sort(inside.begin(), inside.end());
-  } else {
-    const int count = static_cast<int>(scene.objects.size());
-    for (int other = 0; other < count && consider(other); ++other) {
-    }
-  }
-  if (inside.size() > kMaxCandidates) inside.clear();
-  inside.shrink_to_fit();
-  return inside;
-}
-
-}  // namespace
-
 PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
     : tracer_(tracer), certifier_(tracer), max_depth_(max_depth), memory_bytes_(memory_bytes) {
   const Scene& scene = tracer.scene();
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     const Material& material = scene.MaterialOf(i);
     branches_.push_back(!IsBlack(material.reflect) || !IsBlack(material.transmit));
-    insides_.push_back(InsideOf(tracer, i));
   }
 }
 

@@ -59,9 +59,6 @@ class PathCache {
     Reader(const PathCache& cache, const PathLimits& limits, std::vector<Sample>* samples);
 
     const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
-    std::span<const int32_t> Inside(int object) const override {
-      return cache_.insides_[static_cast<size_t>(object)];
-    }
 
     // Radiance along a ray with this hit, if a cell around it may answer at epsilon: then
     // kCertified, else why not.
@@ -124,10 +121,7 @@ class PathCache {
   const PathCertifier certifier_;
   const int max_depth_;
   std::vector<bool> branches_;  // by object: whether it reflects or transmits
-  // By object: of transparent solids, the objects whose bounds come near theirs, unless there are
-  // more than kMaxCandidates.
-  std::vector<std::vector<int32_t>> insides_;
-  std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;

@@ -61,10 +61,6 @@ class PathTracer {
         return Answer(leg, tracer_.IntersectAmong(leg.step->candidates, leg.origin, leg.direction,
                                                   leg.start));
       }
-      if (const HitOf<S> far_side = FarSide(leg); far_side.IsHit()) {
-        ++counts_.listed_branches;
-        return Answer(leg, far_side);
-      }
     }
     ++counts_.intersect;
     return Answer(leg, tracer_.Intersect(leg.origin, leg.direction, leg.start));
@@ -112,16 +108,6 @@ class PathTracer {
       RecordCutOff(Branch::kTransmitted, hit, node);
     }
     return radiance;
-  }
-
-  // Where a ray that starts inside a solid leaves it, if it certainly meets nothing before. By
-  // rounding it may miss the far side; what it meets then is anywhere.
-  HitOf<S> FarSide(const Leg<S>& leg) const {
-    if (paths_ == nullptr || leg.start.side != Side::kInside) return {};
-    const std::span<const int32_t> inside = paths_->Inside(leg.start.object);
-    if (inside.empty()) return {};
-    const HitOf<S> hit = tracer_.IntersectAmong(inside, leg.origin, leg.direction, leg.start);
-    return hit.object == leg.start.object ? hit : HitOf<S>();
   }
 
   // The step whose rays end at this hit: the one that led here if it knows how to go on, or else

@@ -36,13 +36,6 @@ class PathLists {
   // What it and the steps after it say must hold for the classical tracer's own arithmetic: the
   // tracer's answer may not change by a bit. Valid while this object lives.
   virtual const PathStep* Find(const Hit& hit, const Vec3d& direction) const = 0;
-
-  // Ascending: all that a ray can meet before it leaves the solid `object`, in which it starts; the
-  // solid itself is among them. Empty: not known.
-  virtual std::span<const int32_t> Inside(int object) const {
-    (void)object;
-    return {};
-  }
 };
 
 }  // namespace linetree

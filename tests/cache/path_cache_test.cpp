@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "core/trace/shade.h"
@@ -225,75 +224,6 @@ TEST_F(PathCacheTest, WhatFloatsCannotHoldIsNotInterpolated) {
     listed += reader.Find(hit, ray.direction) != nullptr ? 1 : 0;
   }
   EXPECT_GT(listed, 100) << "where rays go is known all the same";
-}
-
-class NoLights : public LightLists {
- public:
-  KnownLights Find(const Hit&) const override { return {}; }
-};
-
-// Glass balls in a heap, some inside others, with clutter between them and in them.
-Scene GlassHeap(test::Random& random) {
-  Scene scene;
-  scene.background = {0.3, 0.4, 0.5};
-  scene.ambient = {0.2, 0.2, 0.2};
-  test::AddMaterial(scene, test::Glass({0.8, 0.9, 0.7}, 1.5, {0.1, 0.1, 0.1}));
-  test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
-  for (int i = 0; i < 12; ++i) {
-    const double r = random.LogUniform(0.05, 1);
-    test::AddObject(scene, test::Sphere(random.InCube(2), r), i % 3 == 0 ? 1 : 0);
-  }
-  test::AddObject(scene, test::Box({-6, -6, -2.1}, {6, 6, -2}), 1);
-  scene.lights.push_back(test::PointLight({3, -5, 8}));
-  return scene;
-}
-
-// Without any cell: rays inside solids need not search the scene for where they leave, and no
-// answer changes by a bit.
-TEST(PathCacheInside, RaysInsideSolidsFindTheirFarSide) {
-  test::Random random(5);
-  RayCounts plain, listed;
-  for (int s = 0; s < 20; ++s) {
-    const Scene scene = GlassHeap(random);
-    const Tracer tracer(scene);
-    const PathCache cache(tracer, 0, kDepth);
-    const PathCache::Reader reader(cache, {}, nullptr);
-    for (int i = 0; i < 500; ++i) {
-      const Vec3d eye = random.Direction() * 8, at = random.InCube(2);
-      const Ray ray{eye, Normalized(at - eye)};
-      const Hit hit = tracer.Intersect(ray.origin, ray.direction, {});
-      if (!hit.IsHit()) continue;
-      const Rgb classical = tracer.RadianceFromHit(hit, ray.origin, ray.direction, {}, plain);
-      const Rgb answer =
-          tracer.RadianceFromHit(hit, ray.origin, ray.direction, {}, NoLights(), &reader, listed);
-      ASSERT_EQ(answer, classical);
-    }
-  }
-  EXPECT_EQ(listed.intersect + listed.listed_branches, plain.intersect);
-  EXPECT_GT(listed.listed_branches, plain.refracted / 5);
-}
-
-TEST(PathCacheInside, ListsAllThatOverlaps) {
-  test::Random random(6);
-  int lists = 0;
-  for (int s = 0; s < 50; ++s) {
-    const Scene scene = GlassHeap(random);
-    const Tracer tracer(scene);
-    const PathCache cache(tracer, 0, kDepth);
-    const PathCache::Reader reader(cache, {}, nullptr);
-    for (int object = 0; object < static_cast<int>(scene.objects.size()); ++object) {
-      const auto inside = reader.Inside(object);
-      const bool is_glass = !IsBlack(scene.MaterialOf(object).transmit);
-      EXPECT_EQ(inside.empty(), !is_glass);
-      lists += is_glass ? 1 : 0;
-      for (int other = 0; is_glass && other < static_cast<int>(scene.objects.size()); ++other) {
-        const bool overlaps = scene.objects[static_cast<size_t>(object)].bounds.Overlaps(
-            scene.objects[static_cast<size_t>(other)].bounds);
-        EXPECT_EQ(std::binary_search(inside.begin(), inside.end(), other), overlaps);
-      }
-    }
-  }
-  EXPECT_GT(lists, 300);
 }
 
 }  // namespace
