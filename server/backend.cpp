@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/library/status.h"
-#include "core/io/load_scene.h"
+#include "core/io/scene_edit.h"
 #include "core/io/wire.h"
 
 namespace linetree {
@@ -25,31 +25,36 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
       renders_(options.render_slots, options.limits.max_waiting_renders),
       loads_(1, options.limits.max_waiting_loads) {}
 
+absl::StatusOr<NamedHost> Backend::Keep(const std::string& name, const SceneSource& source,
+                                        bool replace) {
+  auto scene = BuildScene(source, options_.limits.scene);
+  if (!scene.ok()) return scene.status();
+  return scenes_.Add(name, *std::move(scene), replace,
+                     std::make_shared<const std::string>(source.message().SerializeAsString()));
+}
+
 absl::Status Backend::LoadSceneFiles() {
   for (const SceneFile& file : options_.scenes) {
-    auto scene = LoadSceneFile(file.path, options_.limits.scene);
-    if (!scene.ok()) return scene.status();
-    auto added = scenes_.Add(file.name, *scene, /*replace=*/false);
+    auto source = ReadSceneFile(file.path, options_.limits.scene);
+    if (!source.ok()) return source.status();
+    auto added = Keep(file.name, **source, /*replace=*/false);
     if (!added.ok()) return added.status();
+    const Scene& scene = added->host->scene();
     log_->info("scene {} from {}: {} objects, version {}", file.name, file.path,
-               (*scene)->objects.size(), (*scene)->version);
+               scene.objects.size(), scene.version);
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::shared_ptr<const Scene>> Backend::BuildFrom(
-    v1::LoadSceneRequest request) const {
+absl::StatusOr<std::unique_ptr<SceneSource>> Backend::SourceOf(v1::LoadSceneRequest request) const {
   const SceneLimits& limits = options_.limits.scene;
   switch (request.content_case()) {
     case v1::LoadSceneRequest::kScene:
-      return BuildScene(*SceneFromMessage(std::move(*request.mutable_scene())), limits);
-    case v1::LoadSceneRequest::kText: {
-      auto source = request.format() == v1::LoadSceneRequest::NFF
-                        ? ParseNff(request.text(), request.name(), limits)
-                        : ParseSceneText(request.text(), request.name(), limits);
-      if (!source.ok()) return source.status();
-      return BuildScene(**source, limits);
-    }
+      return SceneFromMessage(std::move(*request.mutable_scene()));
+    case v1::LoadSceneRequest::kText:
+      return request.format() == v1::LoadSceneRequest::NFF
+                 ? ParseNff(request.text(), request.name(), limits)
+                 : ParseSceneText(request.text(), request.name(), limits);
     case v1::LoadSceneRequest::CONTENT_NOT_SET:
       break;
   }
@@ -64,14 +69,44 @@ absl::StatusOr<v1::SceneInfo> Backend::LoadScene(v1::LoadSceneRequest request) {
   }
   const std::string name = request.name();
   const bool replace = request.replace();
-  auto scene = BuildFrom(std::move(request));
-  if (!scene.ok()) return scene.status();
-  auto added = scenes_.Add(name, *std::move(scene), replace);
+  auto source = SourceOf(std::move(request));
+  if (!source.ok()) return source.status();
+  auto added = Keep(name, **source, replace);
   if (!added.ok()) return added.status();
   SceneHost& host = *added->host;
   log_->info("scene {} loaded: {} objects, version {}", name, host.scene().objects.size(),
              host.scene().version);
   return SceneInfoToWire(name, host.scene(), host.CacheBytes());
+}
+
+absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneRequest& request) {
+  auto former = scenes_.Find(request.scene(), "scene");
+  if (!former.ok()) return former.status();
+  const SceneVersion& version = former->host->scene().version;
+  if (!request.expected_version().empty() && request.expected_version() != version) {
+    return absl::FailedPreconditionError(absl::StrCat("expected_version: the scene has version ",
+                                                      version, ", not ",
+                                                      Quoted(request.expected_version())));
+  }
+  v1::Scene message;
+  if (!message.ParseFromString(*former->content)) {
+    return absl::InternalError("the scene's message cannot be read back");
+  }
+  if (auto status = ApplyEdits(request.edits(), message); !status.ok()) return status;
+  auto added = Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true);
+  if (!added.ok()) return added.status();
+  SceneHost& host = *added->host;
+  v1::UpdateSceneReply reply;
+  *reply.mutable_info() = SceneInfoToWire(added->name, host.scene(), host.CacheBytes());
+  if (&host != former->host.get()) {
+    reply.set_cells_kept(added->adopted.kept);
+    reply.set_cells_dropped(added->adopted.dropped);
+    reply.set_find_ms(added->adopt_ms);
+  }
+  log_->info("scene {} edited: {} objects, version {}, {} cells kept, {} dropped", added->name,
+             host.scene().objects.size(), host.scene().version, reply.cells_kept(),
+             reply.cells_dropped());
+  return reply;
 }
 
 v1::ListScenesReply Backend::ListScenes() const {

@@ -1,5 +1,6 @@
 #include "server/scene_store.h"
 
+#include <chrono>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -7,29 +8,52 @@
 
 namespace linetree {
 
-absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
-                                          std::shared_ptr<const Scene> scene, bool replace) {
-  if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
-  // Dies after the lock is released: a big cache takes its time.
-  NamedHost replaced;
+absl::StatusOr<NamedHost> SceneStore::CheckAdd(const std::string& name, const Scene& scene,
+                                               bool replace) const {
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
+  NamedHost former;
   if (found != hosts_.end()) {
-    const SceneVersion& version = found->second.host->scene().version;
-    if (version == scene->version) return found->second;
+    former = found->second;
+    const SceneVersion& version = former.host->scene().version;
+    if (version == scene.version) return former;
     if (!replace) {
       return absl::AlreadyExistsError(absl::StrCat("name: ", Quoted(name),
                                                    " holds other content (scene version ", version,
                                                    "); set replace to take its place"));
     }
   }
-  if (auto status = CheckRoom(found, *scene); !status.ok()) return status;
-  auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
-  if (found != hosts_.end()) replaced = std::move(found->second);
-  const NamedHost added{name, std::move(host), std::make_shared<AuditCounts>()};
+  if (auto status = CheckRoom(found, scene); !status.ok()) return status;
+  return former;
+}
+
+absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
+                                          std::shared_ptr<const Scene> scene, bool replace,
+                                          std::shared_ptr<const std::string> content) {
+  if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
+  // Dies after the lock is released: a big cache takes its time.
+  auto former = CheckAdd(name, *scene, replace);
+  if (!former.ok()) return former;
+  if (former->host && former->host->scene().version == scene->version) return former;
+  NamedHost added{name,
+                  std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
+                  std::make_shared<AuditCounts>(), std::move(content)};
+  if (former->host) {
+    // Outside the lock: it waits for those who read.
+    const auto begin = std::chrono::steady_clock::now();
+    added.adopted = added.host->Adopt(*former->host);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    added.adopt_ms = took.count();
+  }
+  const std::lock_guard lock(mutex_);
   hosts_[name] = added;
   ShareMemory();
   return added;
+}
+
+uint64_t SceneStore::ShareOf(const NamedHost& former) const {
+  const std::lock_guard lock(mutex_);
+  return limits_.memory_bytes / (hosts_.size() + (former.host ? 0 : 1));
 }
 
 void SceneStore::ShareMemory() {

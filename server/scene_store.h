@@ -21,6 +21,11 @@ struct NamedHost {
   std::string name;
   std::shared_ptr<SceneHost> host;
   std::shared_ptr<AuditCounts> audit;  // of this host's answers
+  // The scene's message, serialized, which edits start from.
+  std::shared_ptr<const std::string> content;
+  // What the host took over from the one that it replaced.
+  Adopted adopted{};
+  double adopt_ms = 0;
 };
 
 class SceneStore {
@@ -34,9 +39,11 @@ class SceneStore {
   explicit SceneStore(const Limits& limits) : limits_(limits) {}
 
   // Keeps the scene under `name`. The same content again is a no-op that keeps the warm cache;
-  // other content is ALREADY_EXISTS unless `replace`. RESOURCE_EXHAUSTED when the store is full.
+  // other content is ALREADY_EXISTS unless `replace`: then it takes over what is known of all that
+  // is the same in both, and frames that are under way in the former scene go on without a cache.
+  // RESOURCE_EXHAUSTED when the store is full; all is then as it was. One call at a time.
   absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
-                                bool replace);
+                                bool replace, std::shared_ptr<const std::string> content = nullptr);
 
   // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
   absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
@@ -49,7 +56,12 @@ class SceneStore {
  private:
   using Hosts = std::map<std::string, NamedHost>;
 
+  // What to replace (nothing: a null host), or why the scene cannot be added.
+  absl::StatusOr<NamedHost> CheckAdd(const std::string& name, const Scene& scene,
+                                     bool replace) const;
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
+  // Of a scene in the place of `former`, or in addition.
+  uint64_t ShareOf(const NamedHost& former) const;
   void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 

@@ -16,7 +16,8 @@ using RawService = v1::RadianceCache::WithRawCallbackMethod_LoadScene<
                     v1::RadianceCache::WithRawCallbackMethod_Fly<
                         v1::RadianceCache::WithRawCallbackMethod_TraceRays<
                             v1::RadianceCache::WithRawCallbackMethod_GetStats<
-                                v1::RadianceCache::Service>>>>>>>>;
+                                v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
+                                    v1::RadianceCache::Service>>>>>>>>>;
 
 class Service final : public RawService {
  public:
@@ -34,6 +35,8 @@ class Service final : public RawService {
   grpc::ServerUnaryReactor* DescribeScene(Context* context, const Bytes* request,
                                           Bytes* reply) override;
   grpc::ServerUnaryReactor* UnloadScene(Context* context, const Bytes* request,
+                                        Bytes* reply) override;
+  grpc::ServerUnaryReactor* UpdateScene(Context* context, const Bytes* request,
                                         Bytes* reply) override;
   grpc::ServerWriteReactor<Bytes>* RenderFrame(Context* context, const Bytes* request) override;
   grpc::ServerBidiReactor<Bytes, Bytes>* Fly(Context* context) override;
