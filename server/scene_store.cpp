@@ -26,9 +26,11 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   if (auto status = CheckRoom(found, *scene); !status.ok()) return status;
   auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
   if (found != hosts_.end()) replaced = std::move(found->second);
-  const NamedHost added{name, std::move(host), std::make_shared<AuditCounts>()};
+  const NamedHost added{name, std::move(host), std::make_shared<AuditCounts>(),
+                        std::make_shared<AnswerCounts>()};
   hosts_[name] = added;
   ShareMemory();
+  if (on_change_) on_change_(name, true);
   return added;
 }
 
@@ -87,7 +89,15 @@ absl::Status SceneStore::Remove(const std::string& name, absl::string_view path)
   removed = std::move(found->second);
   hosts_.erase(found);
   ShareMemory();
+  if (on_change_) on_change_(name, false);
   return absl::OkStatus();
+}
+
+void SceneStore::Observe(OnChange on_change) {
+  const std::lock_guard lock(mutex_);
+  on_change_ = std::move(on_change);
+  if (!on_change_) return;
+  for (const auto& [name, host] : hosts_) on_change_(name, true);
 }
 
 }  // namespace linetree

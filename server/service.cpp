@@ -123,4 +123,12 @@ grpc::ServerUnaryReactor* Service::GetStats(Context* context, const Bytes* reque
       [this](const v1::GetStatsRequest& r) { return backend_.GetStats(r); });
 }
 
+grpc::ServerUnaryReactor* Service::GetLimits(Context* context, const Bytes* request, Bytes* reply) {
+  return AnswerNow<v1::GetLimitsRequest>(
+      context, *request, backend_.limits().max_request_bytes, reply,
+      [this](const v1::GetLimitsRequest&) -> absl::StatusOr<v1::GetLimitsReply> {
+        return backend_.GetLimits();
+      });
+}
+
 }  // namespace linetree

@@ -1,0 +1,50 @@
+// In front of all RPCs: who calls, and whether they may. gRPC knows the gate only, so a method that
+// the gate does not name is not there.
+//
+// Without tokens everybody may do everything. With them, a caller shows one in the metadata
+// "authorization" as "Bearer TOKEN": an admin's may do everything, a viewer's what does not change
+// the scenes that are loaded.
+#pragma once
+
+#include <optional>
+
+#include "server/service.h"
+#include "server/tokens.h"
+
+namespace linetree {
+
+class Gate final : public RawService {
+ public:
+  Gate(linetree::Service& service, std::optional<Tokens> tokens)
+      : service_(service), tokens_(std::move(tokens)) {}
+
+  using Context = grpc::CallbackServerContext;
+  using Bytes = grpc::ByteBuffer;
+  grpc::ServerUnaryReactor* LoadScene(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
+  grpc::ServerUnaryReactor* ListScenes(Context* context, const Bytes* request,
+                                       Bytes* reply) override;
+  grpc::ServerUnaryReactor* DescribeScene(Context* context, const Bytes* request,
+                                          Bytes* reply) override;
+  grpc::ServerUnaryReactor* UnloadScene(Context* context, const Bytes* request,
+                                        Bytes* reply) override;
+  grpc::ServerWriteReactor<Bytes>* RenderFrame(Context* context, const Bytes* request) override;
+  grpc::ServerBidiReactor<Bytes, Bytes>* Fly(Context* context) override;
+  grpc::ServerUnaryReactor* TraceRays(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
+  grpc::ServerUnaryReactor* GetStats(Context* context, const Bytes* request, Bytes* reply) override;
+  grpc::ServerUnaryReactor* GetLimits(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
+
+ private:
+  linetree::Service& service_;
+  const std::optional<Tokens> tokens_;
+};
+
+// OK, UNAUTHENTICATED without one of the tokens, PERMISSION_DENIED for a viewer who wants to do
+// what an admin may. `authorization` holds the values of the metadata of this name; `what` is the
+// call.
+absl::Status CheckCaller(const Tokens& tokens, const std::vector<absl::string_view>& authorization,
+                         Role needed, absl::string_view what);
+
+}  // namespace linetree
