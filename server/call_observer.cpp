@@ -41,7 +41,7 @@ class CallObserver final : public grpc::experimental::Interceptor {
 
   void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {
-      Begin(*methods->GetRecvInitialMetadata());
+      Begin(methods->GetRecvInitialMetadata());
     }
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
       methods->GetSendInitialMetadata()->emplace(kRequestIdKey, request_id_);
@@ -53,12 +53,16 @@ class CallObserver final : public grpc::experimental::Interceptor {
   }
 
  private:
-  void Begin(const std::multimap<grpc::string_ref, grpc::string_ref>& metadata) {
+  // The metadata carries the id from now on, whoever made it.
+  void Begin(std::multimap<grpc::string_ref, grpc::string_ref>* metadata) {
     peer_ = info_->server_context()->peer();
-    const auto found = metadata.find(kRequestIdKey);
-    if (found == metadata.end()) return;
-    const std::string_view id(found->second.data(), found->second.size());
-    if (IsRequestId(id)) request_id_ = id;
+    const auto found = metadata->find(kRequestIdKey);
+    if (found != metadata->end()) {
+      const std::string_view id(found->second.data(), found->second.size());
+      if (IsRequestId(id)) request_id_ = id;
+    }
+    metadata->erase(kRequestIdKey);
+    metadata->emplace(kRequestIdKey, request_id_);
   }
 
   // What the server is at fault for stands out; calls that went well are for those who ask.
@@ -94,6 +98,12 @@ bool IsRequestId(std::string_view text) {
            return absl::ascii_isalnum(static_cast<unsigned char>(c)) ||
                   std::string_view("_.:-").find(c) != std::string_view::npos;
          });
+}
+
+std::string RequestIdOf(const grpc::ServerContextBase& context) {
+  const auto found = context.client_metadata().find(kRequestIdKey);
+  if (found == context.client_metadata().end()) return "";
+  return {found->second.data(), found->second.size()};
 }
 
 std::string MakeRequestId() {

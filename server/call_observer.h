@@ -1,6 +1,7 @@
 // Sees every call from its arrival to its end: gives it a request id, counts it, and logs one line.
 #pragma once
 
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/server_interceptor.h>
 #include <spdlog/logger.h>
 
@@ -19,6 +20,8 @@ inline constexpr char kRequestIdKey[] = "x-request-id";
 bool IsRequestId(std::string_view text);
 // 16 hexadecimal digits, at random.
 std::string MakeRequestId();
+// That of a call that is being answered.
+std::string RequestIdOf(const grpc::ServerContextBase& context);
 
 // Calls may end after the server does: what they need is shared.
 class CallObserverFactory final : public grpc::experimental::ServerInterceptorFactoryInterface {

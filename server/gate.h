@@ -6,7 +6,9 @@
 // the scenes that are loaded.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "server/service.h"
 #include "server/tokens.h"
@@ -40,6 +42,10 @@ class Gate final : public RawService {
   linetree::Service& service_;
   const std::optional<Tokens> tokens_;
 };
+
+// The values of a call's metadata of this name; they live as long as it does.
+std::vector<absl::string_view> Authorization(
+    const std::multimap<grpc::string_ref, grpc::string_ref>& metadata);
 
 // OK, UNAUTHENTICATED without one of the tokens, PERMISSION_DENIED for a viewer who wants to do
 // what an admin may. `authorization` holds the values of the metadata of this name; `what` is the

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/call_observer.h"
 #include "server/log_sink.h"
+#include "server/token_processor.h"
 
 namespace linetree {
 namespace {
@@ -51,6 +52,11 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   auto tokens = ReadTokens(options.token_file);
   if (!tokens.ok()) return tokens.status();
   std::unique_ptr<Server> server(new Server(options, *std::move(tokens), log));
+  if (server->tokens_ && !options.tls.cert.empty()) {
+    (*credentials)
+        ->SetAuthMetadataProcessor(
+            std::make_shared<TokenProcessor>(*server->tokens_, server->metrics_, log));
+  }
   if (auto status = server->StartHttp(options); !status.ok()) return status;
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
   if (auto status = server->Listen(options, *credentials); !status.ok()) return status;

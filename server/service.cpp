@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/call_observer.h"
 #include "server/frame_call.h"
+#include "server/log_format.h"
 #include "server/messages.h"
 #include "server/queued_call.h"
 
@@ -62,7 +64,9 @@ grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* requ
   const size_t max_bytes = backend_.limits().max_scene_bytes;
   const auto status = CheckSize(*request, max_bytes, v1::LoadSceneRequest());
   if (!status.ok()) return Finish(context, status);
-  const auto work = [this, request, max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+  const auto work = [this, context, request,
+                     max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
     const auto counted = CheckMessages(*request, backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::LoadSceneRequest>(*request, max_bytes, [this](v1::LoadSceneRequest&& r) {
@@ -90,6 +94,7 @@ grpc::ServerUnaryReactor* Service::DescribeScene(Context* context, const Bytes* 
 
 grpc::ServerUnaryReactor* Service::UnloadScene(Context* context, const Bytes* request,
                                                Bytes* reply) {
+  const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
   return AnswerNow<v1::UnloadSceneRequest>(
       context, *request, backend_.limits().max_request_bytes, reply,
       [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });

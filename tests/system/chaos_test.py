@@ -45,11 +45,6 @@ def eye(step):
                             up={"y": 1}, fov_deg=45)
 
 
-def resident_bytes(process):
-    text = pathlib.Path(f"/proc/{process.pid}/status").read_text()
-    return int(re.search(r"VmHWM:\s+(\d+) kB", text)[1]) << 10
-
-
 class Oracle:
     """Classical frames of a server, each asked for once; and others held against them."""
 
@@ -99,7 +94,7 @@ class Chaos(unittest.TestCase):
         stats = cls.stub.GetStats(service_pb2.GetStatsRequest(), timeout=PATIENCE_S)
         assert all(s.audit.violations == 0 for s in stats.scenes), stats
         assert sum(s.cache_bytes for s in stats.scenes) <= MEMORY_BYTES, stats
-        assert resident_bytes(cls.server.process) < MEMORY_BYTES + RSS_BEYOND_BUDGET_BYTES
+        assert served.peak_bytes(cls.server.process) < MEMORY_BYTES + RSS_BEYOND_BUDGET_BYTES
         assert cls.server.stop() == 0
 
     def expect_good_frames(self, count=3):

@@ -107,6 +107,8 @@ class Logs(unittest.TestCase):
         calls = {line["rpc"]: line for line in lines if line["message"] == "call"}
         self.assertEqual(calls["/linetree.v1.RadianceCache/LoadScene"]["request_id"], "shot-7")
         self.assertEqual(calls["/linetree.v1.RadianceCache/LoadScene"]["code"], "OK")
+        loaded = [line for line in lines if line["message"].startswith("scene ball loaded")]
+        self.assertEqual([line["request_id"] for line in loaded], ["shot-7"])
         frame = calls["/linetree.v1.RadianceCache/RenderFrame"]
         self.assertEqual(frame["code"], "NOT_FOUND")
         self.assertRegex(frame["request_id"], r"^[0-9a-f]{16}$")

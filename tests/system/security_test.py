@@ -11,6 +11,7 @@ import grpc
 import served
 from served import PATIENCE_S, PROGRAMS, fetch, refused, service_pb2, small_frame
 
+LARGE_BYTES = 100 << 20
 VIEWER, ADMIN = "looks-and-no-more", "may-do-everything"
 
 
@@ -131,7 +132,21 @@ class Security(unittest.TestCase):
             status, text = fetch(f"{url}/metrics", Authorization=f"Bearer {VIEWER}")
             self.assertEqual(status, 200)
             self.assertIn('linetree_calls_total{code="PERMISSION_DENIED",rpc="LoadScene"} 1', text)
+            series = 'linetree_calls_total{code="UNAUTHENTICATED",rpc="RenderFrame"} 1'
+            self.assertIn(series, text)
             self.check_client(server)
+
+    def test_strangers_requests_are_not_read(self):
+        with served.Served(*self.tls, "--token-file", self.tokens,
+                           credentials=self.certificates.channel()) as server:
+            before = served.peak_bytes(server.process)
+            request = service_pb2.LoadSceneRequest(name="ball", text=" " * LARGE_BYTES)
+            with refused(self, grpc.StatusCode.UNAUTHENTICATED, "authorization: "):
+                server.stub.LoadScene(request, timeout=PATIENCE_S)
+            self.assertLess(served.peak_bytes(server.process) - before, LARGE_BYTES // 2)
+            # An admin's is: a scene without anything in it.
+            server.stub.LoadScene(request, timeout=PATIENCE_S, metadata=bearer(ADMIN))
+            self.assertGreater(served.peak_bytes(server.process) - before, LARGE_BYTES)
 
     def check_client(self, server):
         """The linetree command by TLS, with a token from a file or from the environment."""

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pathlib
+import re
 import signal
 import ssl
 import subprocess
@@ -82,6 +83,12 @@ class Served:
         """Sends the signal; what the process returns."""
         self.process.send_signal(signal_number)
         return self.process.wait(timeout=PATIENCE_S)
+
+
+def peak_bytes(process):
+    """The most memory that the process has had."""
+    text = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+    return int(re.search(r"VmHWM:\s+(\d+) kB", text)[1]) << 10
 
 
 def fetch(url, **headers):
