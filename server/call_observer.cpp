@@ -23,12 +23,15 @@ class CallObserver final : public grpc::experimental::Interceptor {
  public:
   CallObserver(grpc::experimental::ServerRpcInfo* info, std::shared_ptr<CallMetrics> metrics,
                std::shared_ptr<spdlog::logger> log)
-      : info_(info), metrics_(std::move(metrics)), log_(std::move(log)) {}
+      : info_(info), metrics_(std::move(metrics)), log_(std::move(log)) {
+    metrics_->Begin(method_);
+  }
 
   // Dies with the call.
   ~CallObserver() override {
     const std::chrono::duration<double> took = Clock::now() - began_;
     metrics_->Count(method_, status_.error_code(), took);
+    metrics_->End(method_);
     if (!log_->should_log(LevelOf(status_.error_code()))) return;
     const LogFields fields({{"rpc", method_},
                             {"code", CodeName(status_.error_code())},

@@ -17,16 +17,6 @@ class Refused final : public Reactor {
   void OnDone() override { delete this; }
 };
 
-// Lets the call through, or ends it.
-template <class Reactor, class Call>
-Reactor* Pass(const std::optional<Tokens>& tokens, grpc::CallbackServerContext* context,
-              Role needed, absl::string_view what, const Call& call) {
-  if (!tokens) return call();
-  const auto status = CheckCaller(*tokens, Authorization(context->client_metadata()), needed, what);
-  if (status.ok()) return call();
-  return new Refused<Reactor>(Finished(status, context));
-}
-
 }  // namespace
 
 std::vector<absl::string_view> Authorization(
@@ -58,56 +48,68 @@ absl::Status CheckCaller(const Tokens& tokens, const std::vector<absl::string_vi
   return absl::OkStatus();
 }
 
+template <class Reactor, class Call>
+Reactor* Gate::Pass(Context* context, Role needed, absl::string_view what, const Call& call) const {
+  absl::Status status;
+  if (closed_) {
+    status = absl::UnavailableError("the server is stopping");
+  } else if (tokens_) {
+    status = CheckCaller(*tokens_, Authorization(context->client_metadata()), needed, what);
+  }
+  if (status.ok()) return call();
+  return new Refused<Reactor>(Finished(status, context));
+}
+
 grpc::ServerUnaryReactor* Gate::LoadScene(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kAdmin, "LoadScene", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kAdmin, "LoadScene", [&] {
     return service_.LoadScene(context, request, reply);
   });
 }
 
 grpc::ServerUnaryReactor* Gate::ListScenes(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kViewer, "ListScenes", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "ListScenes", [&] {
     return service_.ListScenes(context, request, reply);
   });
 }
 
 grpc::ServerUnaryReactor* Gate::DescribeScene(Context* context, const Bytes* request,
                                               Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kViewer, "DescribeScene", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "DescribeScene", [&] {
     return service_.DescribeScene(context, request, reply);
   });
 }
 
 grpc::ServerUnaryReactor* Gate::UnloadScene(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kAdmin, "UnloadScene", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kAdmin, "UnloadScene", [&] {
     return service_.UnloadScene(context, request, reply);
   });
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* Gate::RenderFrame(Context* context,
                                                               const Bytes* request) {
-  return Pass<grpc::ServerWriteReactor<Bytes>>(tokens_, context, Role::kViewer, "RenderFrame", [&] {
+  return Pass<grpc::ServerWriteReactor<Bytes>>(context, Role::kViewer, "RenderFrame", [&] {
     return service_.RenderFrame(context, request);
   });
 }
 
 grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Gate::Fly(Context* context) {
-  return Pass<grpc::ServerBidiReactor<Bytes, Bytes>>(tokens_, context, Role::kViewer, "Fly",
+  return Pass<grpc::ServerBidiReactor<Bytes, Bytes>>(context, Role::kViewer, "Fly",
                                                      [&] { return service_.Fly(context); });
 }
 
 grpc::ServerUnaryReactor* Gate::TraceRays(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kViewer, "TraceRays", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "TraceRays", [&] {
     return service_.TraceRays(context, request, reply);
   });
 }
 
 grpc::ServerUnaryReactor* Gate::GetStats(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kViewer, "GetStats",
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "GetStats",
                                         [&] { return service_.GetStats(context, request, reply); });
 }
 
 grpc::ServerUnaryReactor* Gate::GetLimits(Context* context, const Bytes* request, Bytes* reply) {
-  return Pass<grpc::ServerUnaryReactor>(tokens_, context, Role::kViewer, "GetLimits", [&] {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "GetLimits", [&] {
     return service_.GetLimits(context, request, reply);
   });
 }

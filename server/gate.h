@@ -6,6 +6,7 @@
 // the scenes that are loaded.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <optional>
 #include <vector>
@@ -19,6 +20,9 @@ class Gate final : public RawService {
  public:
   Gate(linetree::Service& service, std::optional<Tokens> tokens)
       : service_(service), tokens_(std::move(tokens)) {}
+
+  // Lets nobody in any more: calls end with UNAVAILABLE.
+  void Close() { closed_ = true; }
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -39,8 +43,13 @@ class Gate final : public RawService {
                                       Bytes* reply) override;
 
  private:
+  // Lets the call through, or ends it.
+  template <class Reactor, class Call>
+  Reactor* Pass(Context* context, Role needed, absl::string_view what, const Call& call) const;
+
   linetree::Service& service_;
   const std::optional<Tokens> tokens_;
+  std::atomic<bool> closed_{false};
 };
 
 // The values of a call's metadata of this name; they live as long as it does.

@@ -5,11 +5,15 @@
 #include <grpcpp/support/status.h>
 #include <prometheus/counter.h>
 #include <prometheus/family.h>
+#include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
 #include <prometheus/metric_family.h>
 #include <prometheus/registry.h>
 
 #include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +27,11 @@ class CallMetrics {
  public:
   CallMetrics();
 
+  // Calls of ours that are open. WaitUntilIdle returns when there are none, or at the deadline.
+  void Begin(std::string_view method);
+  void End(std::string_view method);
+  void WaitUntilIdle(std::chrono::steady_clock::time_point deadline);
+
   // `method` is a full name as gRPC has it; methods of other services than ours count as "other".
   void Count(std::string_view method, grpc::StatusCode code, std::chrono::duration<double> took);
   std::vector<prometheus::MetricFamily> Collect() const { return registry_.Collect(); }
@@ -31,6 +40,10 @@ class CallMetrics {
   prometheus::Registry registry_;
   prometheus::Family<prometheus::Counter>& calls_;
   prometheus::Family<prometheus::Histogram>& seconds_;
+  prometheus::Gauge& open_gauge_;
+  std::mutex mutex_;
+  std::condition_variable idle_;
+  uint64_t open_ = 0;  // guarded by mutex_
 };
 
 // What the server holds and has to do.

@@ -142,8 +142,13 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   if (grpc_ == nullptr) return;
   backend_.scenes().Observe(nullptr);
   if (auto* health = grpc_->GetHealthCheckService()) health->Shutdown();
+  // Once gRPC shuts down, calls that arrive are cancelled without a word: better they hear it from
+  // the gate, until there are no others.
+  const auto deadline = std::chrono::steady_clock::now() + timeout_ms;
+  gate_.Close();
   service_.Drain();
-  grpc_->Shutdown(std::chrono::system_clock::now() + timeout_ms);
+  metrics_->WaitUntilIdle(deadline);
+  grpc_->Shutdown(std::chrono::system_clock::now() + (deadline - std::chrono::steady_clock::now()));
   grpc_.reset();
 }
 

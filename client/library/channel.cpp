@@ -63,6 +63,8 @@ void Caller::Prepare(grpc::ClientContext& context, Deadline deadline) const {
 absl::Status Caller::StatusOf(const grpc::Status& status, const grpc::ClientContext& context) {
   absl::Status result = FromGrpc(status);
   if (result.ok()) return result;
+  // Nobody here cancels but over what the server has sent. A server that shuts down does.
+  if (absl::IsCancelled(result)) result = absl::UnavailableError(result.message());
   const auto& trailers = context.GetServerTrailingMetadata();
   const auto hint = trailers.find(kRetryPushbackKey);
   if (hint == trailers.end()) return result;

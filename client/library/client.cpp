@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/library/channel.h"
 #include "client/library/flight.h"
+#include "client/library/status.h"
 #include "core/io/wire.h"
 #include "core/io/wire_frame.h"
 #include "linetree/v1/service.grpc.pb.h"
@@ -109,11 +110,10 @@ absl::StatusOr<Frame> GrpcClient::RenderFrame(const std::string& scene, const Fr
       if (!bad.ok()) context.TryCancel();
       if (bad.ok() && progress) progress(assembler->share_done());
     }
-    return stream->Finish();
+    const grpc::Status ended = stream->Finish();
+    return bad.ok() ? ended : ToGrpc(bad);
   };
-  const absl::Status status = caller_.Call(attempt);
-  if (!bad.ok()) return bad;
-  if (!status.ok()) return status;
+  if (auto status = caller_.Call(attempt); !status.ok()) return status;
   if (!assembler || !assembler->complete()) {
     return absl::DataLossError("the server ended the call before the frame was complete");
   }

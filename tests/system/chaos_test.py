@@ -21,8 +21,9 @@ from served import PATIENCE_S, PROGRAMS, scene_pb2, service_pb2, small_frame
 
 EPSILON = 0.1
 WHITE = 1.0
-# Beyond the budget of the caches: code, libraries, threads, frames in work, packets.
-RSS_BEYOND_BUDGET_BYTES = 400 << 20
+# Beyond the budget of the caches: code, libraries, threads, packets, frames in work, which are some
+# twenty bytes a pixel. The address sanitizer keeps what was freed for a while, up to 256 MiB.
+RSS_BEYOND_BUDGET_BYTES = (256 << 20) + (512 << 20) * served.SANITIZED
 MEMORY_BYTES = 2 << 20
 # A ray along an edge, and radiance as float: see service_test.py.
 FLOAT_ROUNDING = 2.0**-22
@@ -296,7 +297,9 @@ class Endings(unittest.TestCase):
             self.assertEqual(server.stop(), 0)
             for thread in threads:
                 thread.join()
-            self.assertEqual({results.get() for _ in threads}, {grpc.StatusCode.UNAVAILABLE})
+            # What arrives while gRPC itself is going down is cancelled, whatever we do.
+            self.assertLessEqual({results.get() for _ in threads},
+                                 {grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.CANCELLED})
 
     def test_a_flight_outlives_its_server(self):
         scene = str(served.PROJECT / "scenes" / "gap.textproto")
@@ -328,6 +331,24 @@ class Endings(unittest.TestCase):
                  f"{folder}/classical_{frame:02d}.exr", "--epsilon", str(EPSILON)],
                 capture_output=True, text=True, check=False, timeout=PATIENCE_S)
             self.assertEqual(compared.returncode, 0, compared.stdout)
+
+    def test_memory_after_ten_thousand_frames_of_64_sessions(self):
+        scene = str(served.PROJECT / "scenes" / "room.textproto")
+        path = str(served.PROJECT / "scenes" / "paths" / "room_walk.textproto")
+        with served.Served("--scene", f"room={scene}", "--memory", str(MEMORY_BYTES),
+                           stderr=subprocess.DEVNULL) as server:
+            run = subprocess.run(
+                [PROGRAMS / "linetree", "load", "--server", server.address, "--scene", "room",
+                 "--path", path, "--clients", "64", "--frames", "160", "--width", "24",
+                 "--height", "16", "-q"], capture_output=True, text=True, check=False,
+                timeout=PATIENCE_S)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            stats = server.stub.GetStats(service_pb2.GetStatsRequest(), timeout=PATIENCE_S)
+            self.assertEqual(stats.scenes[0].frames, 64 * 160)
+            self.assertLessEqual(stats.scenes[0].cache_bytes, MEMORY_BYTES)
+            self.assertLess(served.peak_bytes(server.process),
+                            MEMORY_BYTES + RSS_BEYOND_BUDGET_BYTES)
+            self.assertEqual(server.stop(), 0)
 
     def test_the_example_of_the_library(self):
         scene = str(served.PROJECT / "scenes" / "gap.textproto")

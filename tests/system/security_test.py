@@ -11,7 +11,7 @@ import grpc
 import served
 from served import PATIENCE_S, PROGRAMS, fetch, refused, service_pb2, small_frame
 
-LARGE_BYTES = 100 << 20
+LARGE_BYTES = 40 << 20
 VIEWER, ADMIN = "looks-and-no-more", "may-do-everything"
 
 

@@ -21,6 +21,7 @@ import grpc  # noqa: E402
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = pathlib.Path(os.environ["LINETREE_PROGRAMS"])
 PROGRAM = PROGRAMS / "linetreed"
+SANITIZED = b"__asan_init" in PROGRAM.read_bytes()
 SERVICE = "linetree.v1.RadianceCache"
 # Nothing here takes this long; a hang shall end as a failure.
 PATIENCE_S = 120
