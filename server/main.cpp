@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "server/log_capture.h"
 #include "server/log_format.h"
 #include "server/log_sink.h"
 #include "server/server.h"
@@ -179,6 +180,7 @@ int main(int argc, char** argv) {
   log->set_formatter(linetree::MakeLogFormatter(
       flags.log_format == "json" ? linetree::LogFormat::kJson : linetree::LogFormat::kText));
   log->set_level(spdlog::level::from_str(flags.log_level));
+  linetree::CaptureLibraryLogs(log);
   if (auto status = linetree::Finish(flags, options); !status.ok()) {
     log->error("{}", std::string(status.message()));
     return 2;

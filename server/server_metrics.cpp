@@ -117,6 +117,9 @@ void AddAudit(const v1::GetStatsReply& stats, Families& out) {
   out.Begin("linetree_audit_violations_total", MetricType::Counter,
             "Of these, those that broke their promise.");
   AddOfScenes(stats, out, [](const SceneStats& s) { return s.audit().violations(); });
+  out.Begin("linetree_audit_max_error_over_allowed", MetricType::Gauge,
+            "Largest error of the checked, by what was allowed: above 1 a violation.");
+  AddOfScenes(stats, out, [](const SceneStats& s) { return s.audit().max_error_over_allowed(); });
   out.Begin("linetree_audit_dropped_total", MetricType::Counter, "Picked, but not checked.");
   AddOfScenes(stats, out, [](const SceneStats& s) { return s.audit().dropped(); });
 }

@@ -102,11 +102,15 @@ class Logs(unittest.TestCase):
             self.assertIn(("x-request-id", "shot-7"), call.initial_metadata())
             with refused(self, grpc.StatusCode.NOT_FOUND, "scene"):
                 list(server.stub.RenderFrame(small_frame(scene="gone"), timeout=PATIENCE_S))
+            # Protobuf complains of what is no UTF-8: in our words, not in its own on the same stream.
+            with refused(self, grpc.StatusCode.INVALID_ARGUMENT, ""):
+                server.call_raw(f"/{served.SERVICE}/DescribeScene", b"\x0a\x01\xff")
             server.process.send_signal(signal.SIGTERM)
             lines = [json.loads(line) for line in server.process.communicate()[1].splitlines()]
         calls = {line["rpc"]: line for line in lines if line["message"] == "call"}
         self.assertEqual(calls["/linetree.v1.RadianceCache/LoadScene"]["request_id"], "shot-7")
         self.assertEqual(calls["/linetree.v1.RadianceCache/LoadScene"]["code"], "OK")
+        self.assertTrue(any(line["message"].startswith("Protobuf: ") for line in lines))
         loaded = [line for line in lines if line["message"].startswith("scene ball loaded")]
         self.assertEqual([line["request_id"] for line in loaded], ["shot-7"])
         frame = calls["/linetree.v1.RadianceCache/RenderFrame"]
