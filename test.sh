@@ -8,15 +8,17 @@ cd "$(dirname "$0")" || exit 1
 
 usage() {
   cat <<'TEXT'
-usage: ./test.sh [--quick] [--stage Release|Asan|Tsan]... [--stress-long] [--help]
+usage: ./test.sh [--quick] [--stage Release|Asan|Tsan]... [--stress-long] [--fuzz-long] [--help]
   --quick       Release only (the same as --stage Release)
   --stage TYPE  only these build types, in the order given
   --stress-long the stress tests in their long form, some twenty times as much
+  --fuzz-long   the fuzz tests, of the Asan stage, with a thousand times as many inputs
   --help        this text
 Environment:
   LINETREE_TEST_JOBS    tests that run at the same time (default: one a core)
   LINETREE_STRESS_SEED  a number that the stress tests' scenes and rays are drawn from
   LINETREE_STRESS_LONG  1: the same as --stress-long
+  LINETREE_FUZZ_LONG    1: the same as --fuzz-long
 Builds go to build/release, build/asan and build/tsan.
 TEXT
 }
@@ -26,6 +28,7 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --quick) stages+=(Release) ;;
     --stress-long) export LINETREE_STRESS_LONG=1 ;;
+    --fuzz-long) export LINETREE_FUZZ_LONG=1 ;;
     --stage)
       case "${2-}" in
         Release | Asan | Tsan) stages+=("$2"); shift ;;

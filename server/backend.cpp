@@ -6,6 +6,7 @@
 #include "client/library/status.h"
 #include "core/io/scene_edit.h"
 #include "core/io/wire.h"
+#include "server/limit_list.h"
 
 namespace linetree {
 
@@ -134,7 +135,19 @@ absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneR
 v1::GetStatsReply::SceneStats Backend::StatsOf(const NamedHost& scene) {
   v1::GetStatsReply::SceneStats stats = SceneStatsToWire(scene.name, *scene.host);
   *stats.mutable_audit() = AuditStatsToWire(scene.audit->values());
+  AnswerCountsToWire(scene.answers->values(), scene.host->scene(), &stats);
   return stats;
+}
+
+v1::GetLimitsReply Backend::GetLimits() const {
+  v1::GetLimitsReply reply;
+  for (const NamedLimit& limit : ListLimits(options_.limits)) {
+    v1::GetLimitsReply::Limit* out = reply.add_limits();
+    out->set_name(std::string(limit.name));
+    out->set_value(limit.value);
+    out->set_bounds(std::string(limit.bounds));
+  }
+  return reply;
 }
 
 absl::StatusOr<v1::GetStatsReply> Backend::GetStats(const v1::GetStatsRequest& request) const {
@@ -165,6 +178,7 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
   const std::vector<Ray> rays = RaysFromWire(request);
   const auto batch = scene->host->TraceRays(rays, *options, pool_, &cancel);
   if (!batch.ok()) return batch.status();
+  scene->answers->Add(*batch);
   audit_.Offer({scene->name, scene->host, scene->audit}, rays, *options, *batch);
   return RayBatchToWire(*batch, scene->host->scene().version);
 }
@@ -187,9 +201,16 @@ absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelTo
   const NamedHost& scene = frame.scene;
   auto answer = scene.host->RenderFrame(frame.request, pool_, &cancel);
   if (answer.ok()) {
+    scene.answers->Add(*answer);
     audit_.Offer({scene.name, scene.host, scene.audit}, frame.request.options, *answer);
   }
   return answer;
+}
+
+Load Backend::CurrentLoad() const {
+  return {.waiting_renders = renders_.waiting(),
+          .waiting_loads = loads_.waiting(),
+          .open_flights = options_.limits.max_flights - flights_.free()};
 }
 
 absl::Status Backend::Busy(absl::string_view what) const {

@@ -15,6 +15,7 @@
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
+#include "server/metrics.h"
 #include "server/options.h"
 #include "server/scene_store.h"
 #include "server/work_queue.h"
@@ -37,6 +38,7 @@ class Backend {
   // Like LoadScene, one at a time: on loads().
   absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
+  v1::GetLimitsReply GetLimits() const;
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
                                                const CancelToken& cancel);
 
@@ -57,8 +59,9 @@ class Backend {
   WorkQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
-  const SceneStore& scenes() const { return scenes_; }
+  SceneStore& scenes() { return scenes_; }
   LiveAudit& audit() { return audit_; }
+  Load CurrentLoad() const;
   // "No room now" with a hint when to come back.
   absl::Status Busy(absl::string_view what) const;
 

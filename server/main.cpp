@@ -1,11 +1,16 @@
 // linetreed: flags in, a server until SIGTERM or SIGINT.
 #include <signal.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <thread>
 
+#include "server/log_capture.h"
+#include "server/log_format.h"
+#include "server/log_sink.h"
 #include "server/server.h"
+#include "server/service_manager.h"
 
 namespace linetree {
 namespace {
@@ -13,15 +18,22 @@ namespace {
 struct Flags {
   std::vector<std::string> scenes;
   std::string log_level = "info";
+  std::string log_format = "text";
   std::string judge = "certified";
   std::string lanes = "scalar";
   int64_t drain_timeout_ms = 0;
 };
 
-void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
+void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
   app.add_option("--scene", flags.scenes, "NAME=FILE: a scene to load; may be repeated");
-  app.add_option("--listen", options.listen, "HOST:PORT; port 0 takes a free one")
+  app.add_option("--listen", options.listen,
+                 "HOST:PORT; port 0 takes a free one. What other machines can reach needs "
+                 "--tls-cert, --tls-key and --token-file, or --insecure")
       ->capture_default_str();
+  app.add_option("--http", options.http,
+                 "HOST:PORT for /livez, /readyz and /metrics; none when left out. The same rule "
+                 "holds: with --tls-cert it is HTTPS, with --token-file /metrics asks for a token")
+      ->type_name("HOST:PORT");
   app.add_option("--threads", options.threads, "rendering threads; 0: one per hardware thread")
       ->capture_default_str();
   app.add_option("--render-slots", options.render_slots, "frames worked on at a time")
@@ -30,22 +42,6 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->default_str("1GiB");
-  app.add_option("--epsilon", options.defaults.max_relative_error,
-                 "relative error that requests get which name none")
-      ->capture_default_str();
-  app.add_option("--judge", flags.judge, "judge of requests that name none")
-      ->check(CLI::IsMember({"paper", "certified"}))
-      ->capture_default_str();
-  app.add_option("--lanes", flags.lanes,
-                 "how rays are traced for requests that do not say: scalar, or simd")
-      ->check(CLI::IsMember({"scalar", "simd"}))
-      ->capture_default_str();
-  app.add_option("--max-depth", options.defaults.limits.max_depth,
-                 "rays on a path, the eye ray counted")
-      ->capture_default_str();
-  app.add_option("--min-weight", options.defaults.limits.min_weight,
-                 "a path ends when its weight falls below this")
-      ->capture_default_str();
   app.add_option(
          "--audit", options.audit_share,
          "share of the answers from caches, in [0, 1], that is traced again in the background "
@@ -56,9 +52,62 @@ void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
   app.add_option("--drain-timeout-ms", flags.drain_timeout_ms,
                  "how long open calls may go on after the signal to stop")
       ->capture_default_str();
-  app.add_option("--log-level", flags.log_level, "what is logged to standard error")
+}
+
+void AddDefaultsFlags(CLI::App& app, RenderOptions& defaults, Flags& flags) {
+  app.add_option("--epsilon", defaults.max_relative_error,
+                 "relative error that requests get which name none")
+      ->capture_default_str();
+  app.add_option("--judge", flags.judge, "judge of requests that name none")
+      ->check(CLI::IsMember({"paper", "certified"}))
+      ->capture_default_str();
+  app.add_option("--lanes", flags.lanes,
+                 "how rays are traced for requests that do not say: scalar, or simd")
+      ->check(CLI::IsMember({"scalar", "simd"}))
+      ->capture_default_str();
+  app.add_option("--max-depth", defaults.limits.max_depth, "rays on a path, the eye ray counted")
+      ->capture_default_str();
+  app.add_option("--min-weight", defaults.limits.min_weight,
+                 "a path ends when its weight falls below this")
+      ->capture_default_str();
+}
+
+void AddSecurityFlags(CLI::App& app, ServerOptions& options) {
+  app.add_option("--tls-cert", options.tls.cert,
+                 "certificate of this server in PEM, and those that lead to its root")
+      ->type_name("FILE");
+  app.add_option("--tls-key", options.tls.key, "its key in PEM, without a password")
+      ->type_name("FILE");
+  app.add_option("--tls-client-ca", options.tls.client_ca,
+                 "gRPC clients must show a certificate that leads to one of these")
+      ->type_name("FILE");
+  app.add_option("--token-file", options.token_file,
+                 "lines 'viewer TOKEN' and 'admin TOKEN': callers must show one of them; viewers "
+                 "may not load or unload scenes. Health and reflection answer anybody")
+      ->type_name("FILE");
+  app.add_flag("--insecure", options.insecure, "let other machines in without TLS or token");
+}
+
+void AddLogFlags(CLI::App& app, Flags& flags) {
+  app.add_option("--log-level", flags.log_level,
+                 "what is logged to standard error; debug has a line for every call")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
+  app.add_option("--log-format", flags.log_format, "text, or json: one object a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+void AddFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
+  AddServingFlags(app, options, flags);
+  AddDefaultsFlags(app, options.defaults, flags);
+  AddSecurityFlags(app, options);
+  AddLogFlags(app, flags);
+  app.set_version_flag("--version", "linetreed " LINETREE_VERSION);
+  app.set_config("--config", "",
+                 "file of lines 'flag = value' (TOML), for every flag by its name without the "
+                 "dashes; flags of the command line win");
+  app.allow_config_extras(CLI::config_extras_mode::error);
 }
 
 absl::Status Finish(const Flags& flags, ServerOptions& options) {
@@ -86,6 +135,15 @@ sigset_t BlockEndSignals() {
   return signals;
 }
 
+// Whoever asks twice means at once.
+void ExitAtTheNext(const sigset_t& signals) {
+  std::thread([signals] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    std::_Exit(128 + signal);
+  }).detach();
+}
+
 int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
   const sigset_t signals = BlockEndSignals();
   auto server = Server::Start(options, log);
@@ -94,10 +152,14 @@ int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& l
     return 1;
   }
   std::printf("listening on %s\n", (*server)->address().c_str());
+  if (!options.http.empty()) std::printf("http on %s\n", (*server)->http_address().c_str());
   std::fflush(stdout);
+  NotifyServiceManager("READY=1");
   int signal = 0;
   sigwait(&signals, &signal);
+  NotifyServiceManager("STOPPING=1");
   log->info("signal {}: draining for at most {} ms", signal, options.drain_timeout_ms.count());
+  ExitAtTheNext(signals);
   (*server)->Drain(options.drain_timeout_ms);
   log->info("stopped");
   return 0;
@@ -113,8 +175,12 @@ int main(int argc, char** argv) {
   linetree::AddFlags(app, options, flags);
   CLI11_PARSE(app, argc, argv);
 
-  auto log = spdlog::stderr_color_mt("linetreed");
+  const auto log = std::make_shared<spdlog::logger>(
+      "linetreed", std::make_shared<linetree::LogSink>(STDERR_FILENO));
+  log->set_formatter(linetree::MakeLogFormatter(
+      flags.log_format == "json" ? linetree::LogFormat::kJson : linetree::LogFormat::kText));
   log->set_level(spdlog::level::from_str(flags.log_level));
+  linetree::CaptureLibraryLogs(log);
   if (auto status = linetree::Finish(flags, options); !status.ok()) {
     log->error("{}", std::string(status.message()));
     return 2;

@@ -1,8 +1,11 @@
 #include "server/options.h"
 
+#include <arpa/inet.h>
+
 #include <set>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "core/io/wire.h"
@@ -47,6 +50,38 @@ absl::Status CheckDefaults(const RenderOptions& defaults) {
                                                  {"options.min_weight", "--min-weight"}})};
 }
 
+absl::Status CheckTlsFiles(const TlsFiles& tls) {
+  if (tls.cert.empty() != tls.key.empty()) {
+    return Expected("--tls-cert", "--tls-key with it, or neither", "one of the two");
+  }
+  if (!tls.client_ca.empty() && tls.cert.empty()) {
+    return Expected("--tls-client-ca", "--tls-cert and --tls-key with it", "neither");
+  }
+  return absl::OkStatus();
+}
+
+// What other machines can reach is asked for who calls, unless the user wants it otherwise.
+absl::Status CheckReach(absl::string_view flag, const std::string& address,
+                        const ServerOptions& options) {
+  if (options.insecure || IsLoopback(address)) return absl::OkStatus();
+  if (!options.tls.cert.empty() && !options.token_file.empty()) return absl::OkStatus();
+  return Expected(flag,
+                  "a loopback address, or --tls-cert, --tls-key and --token-file with it, or "
+                  "--insecure",
+                  absl::StrCat(address, ", which other machines can reach"));
+}
+
+absl::Status CheckSecurity(const ServerOptions& options) {
+  if (options.listen.empty()) return Expected("--listen", "HOST:PORT", "nothing");
+  if (auto status = CheckTlsFiles(options.tls); !status.ok()) return status;
+  if (auto status = CheckReach("--listen", options.listen, options); !status.ok()) return status;
+  if (options.http.empty()) return absl::OkStatus();
+  if (auto port = SplitHostPort(options.http); !port) {
+    return Expected("--http", "HOST:PORT", options.http);
+  }
+  return CheckReach("--http", options.http, options);
+}
+
 }  // namespace
 
 absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag) {
@@ -57,8 +92,9 @@ absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag) {
 
 absl::Status ValidateServerOptions(const ServerOptions& options) {
   if (auto status = CheckScenes(options.scenes); !status.ok()) return status;
-  if (options.listen.empty()) return Expected("--listen", "HOST:PORT", "nothing");
-  auto status = CheckRange("--threads", options.threads, 0, kMaxThreads);
+  auto status = CheckSecurity(options);
+  if (!status.ok()) return status;
+  status = CheckRange("--threads", options.threads, 0, kMaxThreads);
   if (!status.ok()) return status;
   status = CheckRange("--render-slots", options.render_slots, 1, kMaxRenderSlots);
   if (!status.ok()) return status;
@@ -75,9 +111,25 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
   return CheckDefaults(options.defaults);
 }
 
-bool IsLoopback(const std::string& listen) {
-  return absl::StartsWith(listen, "127.") || absl::StartsWith(listen, "localhost:") ||
-         absl::StartsWith(listen, "[::1]:") || absl::StartsWith(listen, "unix:");
+std::optional<HostPort> SplitHostPort(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  HostPort parts;
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  if (!absl::SimpleAtoi(address.substr(colon + 1), &parts.port)) return std::nullopt;
+  if (parts.port < 0 || parts.port > 65535) return std::nullopt;
+  parts.host = address.substr(0, colon);
+  return parts;
+}
+
+bool IsLoopback(const std::string& address) {
+  if (absl::StartsWith(address, "unix:")) return true;
+  const auto parts = SplitHostPort(address);
+  if (!parts) return false;
+  if (parts->host == "localhost" || parts->host == "[::1]") return true;
+  // 127.a.example is a name that may stand for any machine.
+  in_addr number{};
+  return absl::StartsWith(parts->host, "127.") &&
+         inet_pton(AF_INET, parts->host.c_str(), &number) == 1;
 }
 
 }  // namespace linetree

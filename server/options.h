@@ -2,12 +2,14 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/render/options.h"
 #include "server/limits.h"
+#include "server/tls.h"
 
 namespace linetree {
 
@@ -18,8 +20,15 @@ struct SceneFile {
 
 struct ServerOptions {
   std::vector<SceneFile> scenes;
-  // host:port; port 0 takes a free one. Loopback unless told otherwise: there is no authentication.
+  // host:port; port 0 takes a free one. What other machines can reach needs TLS and tokens, or
+  // `insecure`.
   std::string listen = "127.0.0.1:50051";
+  // host:port for /livez, /readyz and /metrics by HTTP, by HTTPS where there is a certificate;
+  // empty: none. The same rule holds.
+  std::string http;
+  TlsFiles tls;            // cert empty: no TLS
+  std::string token_file;  // see tokens.h; empty: everybody may do everything
+  bool insecure = false;
   // Rendering threads; 0 takes the number of hardware threads.
   int threads = 0;
   // Frames and batches that are worked on at a time; they share the threads.
@@ -42,7 +51,14 @@ absl::Status ValidateServerOptions(const ServerOptions& options);
 // "NAME=FILE", or INVALID_ARGUMENT.
 absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag);
 
-// Whether only this machine can reach the address.
-bool IsLoopback(const std::string& listen);
+struct HostPort {
+  std::string host;
+  int port = 0;
+};
+// "HOST:PORT" with a port in [0, 65535]; brackets around the host stay.
+std::optional<HostPort> SplitHostPort(const std::string& address);
+
+// Whether only this machine can reach the address: 127.x.y.z, localhost, [::1], or a socket file.
+bool IsLoopback(const std::string& address);
 
 }  // namespace linetree

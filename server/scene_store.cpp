@@ -35,9 +35,9 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   auto former = CheckAdd(name, *scene, replace);
   if (!former.ok()) return former;
   if (former->host && former->host->scene().version == scene->version) return former;
-  NamedHost added{name,
-                  std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
-                  std::make_shared<AuditCounts>(), std::move(content)};
+  NamedHost added{
+      name, std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
+      std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(), std::move(content)};
   if (former->host) {
     // Outside the lock: it waits for those who read.
     const auto begin = std::chrono::steady_clock::now();
@@ -48,6 +48,7 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   const std::lock_guard lock(mutex_);
   hosts_[name] = added;
   ShareMemory();
+  if (on_change_) on_change_(name, true);
   return added;
 }
 
@@ -111,7 +112,15 @@ absl::Status SceneStore::Remove(const std::string& name, absl::string_view path)
   removed = std::move(found->second);
   hosts_.erase(found);
   ShareMemory();
+  if (on_change_) on_change_(name, false);
   return absl::OkStatus();
+}
+
+void SceneStore::Observe(OnChange on_change) {
+  const std::lock_guard lock(mutex_);
+  on_change_ = std::move(on_change);
+  if (!on_change_) return;
+  for (const auto& [name, host] : hosts_) on_change_(name, true);
 }
 
 }  // namespace linetree

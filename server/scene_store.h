@@ -5,6 +5,7 @@
 // Thread safety: all methods may be called from any thread.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,13 +15,15 @@
 #include "absl/status/statusor.h"
 #include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
+#include "server/answer_counts.h"
 
 namespace linetree {
 
 struct NamedHost {
   std::string name;
   std::shared_ptr<SceneHost> host;
-  std::shared_ptr<AuditCounts> audit;  // of this host's answers
+  std::shared_ptr<AuditCounts> audit;     // of this host's answers
+  std::shared_ptr<AnswerCounts> answers;  // of this host's answers, too
   // The scene's message, serialized, which edits start from.
   std::shared_ptr<const std::string> content;
   // What the host took over from the one that it replaced.
@@ -53,6 +56,11 @@ class SceneStore {
 
   absl::Status Remove(const std::string& name, absl::string_view path);
 
+  // Tells which names come (true) and go (false), those that are there already first. Called with a
+  // lock held: it must not call the store. Null: nobody is told any more.
+  using OnChange = std::function<void(const std::string& name, bool there)>;
+  void Observe(OnChange on_change);
+
  private:
   using Hosts = std::map<std::string, NamedHost>;
 
@@ -67,7 +75,9 @@ class SceneStore {
 
   const Limits limits_;
   mutable std::mutex mutex_;
-  Hosts hosts_;  // guarded by mutex_
+  // Guarded by mutex_.
+  Hosts hosts_;
+  OnChange on_change_;
 };
 
 }  // namespace linetree

@@ -6,6 +6,9 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/call_observer.h"
+#include "server/log_sink.h"
+#include "server/token_processor.h"
 
 namespace linetree {
 namespace {
@@ -13,10 +16,30 @@ namespace {
 // Peers that died without a word are noticed within these two together.
 constexpr int kKeepaliveTime_ms = 30'000;
 constexpr int kKeepaliveTimeout_ms = 10'000;
+constexpr int kMinPingInterval_ms = 10'000;
 
 std::string WithPort(const std::string& listen, int port) {
   if (absl::StartsWith(listen, "unix:")) return listen;
   return absl::StrCat(listen.substr(0, listen.rfind(':')), ":", port);
+}
+
+absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(const TlsFiles& files) {
+  if (files.cert.empty()) return grpc::InsecureServerCredentials();
+  auto pems = ReadTls(files);
+  if (!pems.ok()) return pems.status();
+  grpc::SslServerCredentialsOptions options(
+      pems->client_ca.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
+                              : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  options.pem_key_cert_pairs.push_back({pems->key, pems->cert});
+  options.pem_root_certs = pems->client_ca;
+  return grpc::SslServerCredentials(options);
+}
+
+absl::StatusOr<std::optional<Tokens>> ReadTokens(const std::string& file) {
+  if (file.empty()) return std::nullopt;
+  auto tokens = Tokens::Read(file);
+  if (tokens.ok()) return *std::move(tokens);
+  return absl::InvalidArgumentError(absl::StrCat("--token-file: ", tokens.status().message()));
 }
 
 }  // namespace
@@ -24,28 +47,57 @@ std::string WithPort(const std::string& listen, int port) {
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options,
                                                       std::shared_ptr<spdlog::logger> log) {
   if (auto status = ValidateServerOptions(options); !status.ok()) return status;
-  std::unique_ptr<Server> server(new Server(options, log));
+  auto credentials = MakeCredentials(options.tls);
+  if (!credentials.ok()) return credentials.status();
+  auto tokens = ReadTokens(options.token_file);
+  if (!tokens.ok()) return tokens.status();
+  std::unique_ptr<Server> server(new Server(options, *std::move(tokens), log));
+  if (server->tokens_ && !options.tls.cert.empty()) {
+    (*credentials)
+        ->SetAuthMetadataProcessor(
+            std::make_shared<TokenProcessor>(*server->tokens_, server->metrics_, log));
+  }
+  if (auto status = server->StartHttp(options); !status.ok()) return status;
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
-  if (auto status = server->Listen(options); !status.ok()) return status;
-  if (!IsLoopback(options.listen)) {
-    log->warn("{} can be reached from other machines, and nothing asks who calls",
-              server->address_);
+  if (auto status = server->Listen(options, *credentials); !status.ok()) return status;
+  server->ready_ = true;
+  if (options.insecure && !IsLoopback(options.listen)) {
+    log->warn("{} can be reached from other machines, and --insecure lets them", server->address_);
   }
   return server;
 }
 
-absl::Status Server::Listen(const ServerOptions& options) {
+absl::Status Server::StartHttp(const ServerOptions& options) {
+  if (options.http.empty()) return absl::OkStatus();
+  auto http = HttpEndpoint::Start(
+      options.http, options.tls,
+      {.is_ready = [this] { return ready_.load(); },
+       .metrics = [this] { return MetricsText(); },
+       .may_see_metrics = [this](const std::string& header) { return MaySeeMetrics(header); }});
+  if (!http.ok()) return http.status();
+  http_ = *std::move(http);
+  return absl::OkStatus();
+}
+
+absl::Status Server::Listen(const ServerOptions& options,
+                            const std::shared_ptr<grpc::ServerCredentials>& credentials) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   int port = 0;
-  builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
-  builder.RegisterService(&service_);
+  builder.AddListeningPort(options.listen, credentials, &port);
+  builder.RegisterService(&gate_);
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> observers;
+  observers.push_back(std::make_unique<CallObserverFactory>(metrics_, log_));
+  builder.experimental().SetInterceptorCreators(std::move(observers));
   builder.SetMaxReceiveMessageSize(options.limits.max_message_bytes);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS,
                              options.limits.max_streams_per_connection);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime_ms);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout_ms);
+  // Clients may find out as often whether we are still there.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
+                             kMinPingInterval_ms);
   // Otherwise a second server on the same port would silently get half of the calls.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   grpc_ = builder.BuildAndStart();
@@ -53,20 +105,57 @@ absl::Status Server::Listen(const ServerOptions& options) {
     return absl::UnavailableError(absl::StrCat("--listen: cannot listen on ", options.listen));
   }
   address_ = WithPort(options.listen, port);
-  if (auto* health = grpc_->GetHealthCheckService()) {
-    health->SetServingStatus(v1::RadianceCache::service_full_name(), true);
-  }
+  TellHealth();
   return absl::OkStatus();
 }
 
+void Server::TellHealth() {
+  auto* health = grpc_->GetHealthCheckService();
+  if (health == nullptr) return;
+  health->SetServingStatus(v1::RadianceCache::service_full_name(), true);
+  backend_.scenes().Observe([health](const std::string& name, bool there) {
+    health->SetServingStatus(absl::StrCat(kSceneHealthPrefix, name), there);
+  });
+}
+
+std::string Server::MetricsText() {
+  std::vector<prometheus::MetricFamily> families = metrics_->Collect();
+  Load load = backend_.CurrentLoad();
+  for (const auto& sink : log_->sinks()) {
+    if (const auto* lossy = dynamic_cast<const LogSink*>(sink.get())) {
+      load.log_lines_lost += lossy->lines_lost();
+    }
+  }
+  // All scenes: there is nothing in the request that could be wrong.
+  for (auto& family : CollectServer(*backend_.GetStats({}), load)) {
+    families.push_back(std::move(family));
+  }
+  return linetree::MetricsText(families);
+}
+
+bool Server::MaySeeMetrics(const std::string& authorization) const {
+  return !tokens_ || CheckCaller(*tokens_, {authorization}, Role::kViewer, "metrics").ok();
+}
+
 void Server::Drain(std::chrono::milliseconds timeout_ms) {
+  ready_ = false;
   if (grpc_ == nullptr) return;
-  if (auto* health = grpc_->GetHealthCheckService()) health->SetServingStatus(false);
+  backend_.scenes().Observe(nullptr);
+  if (auto* health = grpc_->GetHealthCheckService()) health->Shutdown();
+  // Once gRPC shuts down, calls that arrive are cancelled without a word: better they hear it from
+  // the gate, until there are no others.
+  const auto deadline = std::chrono::steady_clock::now() + timeout_ms;
+  gate_.Close();
   service_.Drain();
-  grpc_->Shutdown(std::chrono::system_clock::now() + timeout_ms);
+  metrics_->WaitUntilIdle(deadline);
+  grpc_->Shutdown(std::chrono::system_clock::now() + (deadline - std::chrono::steady_clock::now()));
   grpc_.reset();
 }
 
-Server::~Server() { Drain(std::chrono::milliseconds(0)); }
+Server::~Server() {
+  Drain(std::chrono::milliseconds(0));
+  // Before what it asks.
+  http_.reset();
+}
 
 }  // namespace linetree

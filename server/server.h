@@ -4,21 +4,29 @@
 #include <grpcpp/server.h>
 #include <spdlog/logger.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "server/backend.h"
+#include "server/gate.h"
+#include "server/http_endpoint.h"
+#include "server/metrics.h"
 #include "server/options.h"
 #include "server/service.h"
 
 namespace linetree {
 
+// gRPC's health service knows a scene by this and its name.
+inline constexpr char kSceneHealthPrefix[] = "scene/";
+
 class Server {
  public:
-  // Loads the scenes, then listens. INVALID_ARGUMENT for bad options or scenes, UNAVAILABLE when
-  // the address cannot be listened on.
+  // Answers by HTTP if it is wanted, loads the scenes, then listens. INVALID_ARGUMENT for bad
+  // options, certificates, tokens or scenes, UNAVAILABLE when an address cannot be listened on.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options,
                                                        std::shared_ptr<spdlog::logger> log);
   // Drains without waiting.
@@ -28,21 +36,40 @@ class Server {
 
   // Where it listens, with the real port.
   const std::string& address() const { return address_; }
+  // Likewise for HTTP; empty without.
+  std::string http_address() const { return http_ ? http_->address() : ""; }
   Backend& backend() { return backend_; }
 
-  // Takes no more calls, lets open ones go on for at most `timeout_ms`, then cancels them. Returns
-  // when all are done. A second call does nothing.
+  // Is not ready from now on, takes no more calls, lets open ones go on for at most `timeout_ms`,
+  // then cancels them. Returns when all are done. A second call does nothing.
   void Drain(std::chrono::milliseconds timeout_ms);
 
  private:
-  Server(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log)
-      : backend_(options, log), service_(backend_) {}
-  absl::Status Listen(const ServerOptions& options);
+  Server(const ServerOptions& options, std::optional<Tokens> tokens,
+         const std::shared_ptr<spdlog::logger>& log)
+      : tokens_(std::move(tokens)),
+        log_(log),
+        backend_(options, log),
+        service_(backend_),
+        gate_(service_, tokens_) {}
+  absl::Status StartHttp(const ServerOptions& options);
+  absl::Status Listen(const ServerOptions& options,
+                      const std::shared_ptr<grpc::ServerCredentials>& credentials);
+  // Health of the server and of its scenes, as they come and go.
+  void TellHealth();
+  std::string MetricsText();
+  bool MaySeeMetrics(const std::string& authorization) const;
 
+  const std::optional<Tokens> tokens_;
+  const std::shared_ptr<spdlog::logger> log_;
+  const std::shared_ptr<CallMetrics> metrics_ = std::make_shared<CallMetrics>();
+  std::atomic<bool> ready_{false};
   std::string address_;
   Backend backend_;
   Service service_;
+  Gate gate_;
   std::unique_ptr<grpc::Server> grpc_;
+  std::unique_ptr<HttpEndpoint> http_;
 };
 
 }  // namespace linetree

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/call_observer.h"
 #include "server/frame_call.h"
+#include "server/log_format.h"
 #include "server/messages.h"
 #include "server/queued_call.h"
 
@@ -63,7 +65,9 @@ grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* requ
   const size_t max_bytes = backend_.limits().max_scene_bytes;
   const auto status = CheckSize(*request, max_bytes, v1::LoadSceneRequest());
   if (!status.ok()) return Finish(context, status);
-  const auto work = [this, request, max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+  const auto work = [this, context, request,
+                     max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
     const auto counted = CheckMessages(*request, v1::LoadSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::LoadSceneRequest>(*request, max_bytes, [this](v1::LoadSceneRequest&& r) {
@@ -92,7 +96,8 @@ grpc::ServerUnaryReactor* Service::DescribeScene(Context* context, const Bytes* 
 // What changes the scenes is done one after the other.
 grpc::ServerUnaryReactor* Service::UnloadScene(Context* context, const Bytes* request,
                                                Bytes* reply) {
-  const auto work = [this, request](const CancelToken&) {
+  const auto work = [this, context, request](const CancelToken&) {
+    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
     return Handle<v1::UnloadSceneRequest>(
         *request, backend_.limits().max_request_bytes,
         [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });
@@ -105,7 +110,9 @@ grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* re
   const size_t max_bytes = backend_.limits().max_scene_bytes;
   const auto status = CheckSize(*request, max_bytes, v1::UpdateSceneRequest());
   if (!status.ok()) return Finish(context, status);
-  const auto work = [this, request, max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+  const auto work = [this, context, request,
+                     max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
     const auto counted = CheckMessages(*request, v1::UpdateSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::UpdateSceneRequest>(
@@ -141,6 +148,14 @@ grpc::ServerUnaryReactor* Service::GetStats(Context* context, const Bytes* reque
   return AnswerNow<v1::GetStatsRequest>(
       context, *request, backend_.limits().max_request_bytes, reply,
       [this](const v1::GetStatsRequest& r) { return backend_.GetStats(r); });
+}
+
+grpc::ServerUnaryReactor* Service::GetLimits(Context* context, const Bytes* request, Bytes* reply) {
+  return AnswerNow<v1::GetLimitsRequest>(
+      context, *request, backend_.limits().max_request_bytes, reply,
+      [this](const v1::GetLimitsRequest&) -> absl::StatusOr<v1::GetLimitsReply> {
+        return backend_.GetLimits();
+      });
 }
 
 }  // namespace linetree

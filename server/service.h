@@ -1,4 +1,4 @@
-// The RPCs: bodies only translate between gRPC and the Backend.
+// The RPCs behind the gate: bodies only translate between gRPC and the Backend.
 #pragma once
 
 #include "linetree/v1/service.grpc.pb.h"
@@ -16,8 +16,9 @@ using RawService = v1::RadianceCache::WithRawCallbackMethod_LoadScene<
                     v1::RadianceCache::WithRawCallbackMethod_Fly<
                         v1::RadianceCache::WithRawCallbackMethod_TraceRays<
                             v1::RadianceCache::WithRawCallbackMethod_GetStats<
-                                v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
-                                    v1::RadianceCache::Service>>>>>>>>>;
+                                v1::RadianceCache::WithRawCallbackMethod_GetLimits<
+                                    v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
+                                        v1::RadianceCache::Service>>>>>>>>>>;
 
 class Service final : public RawService {
  public:
@@ -43,6 +44,8 @@ class Service final : public RawService {
   grpc::ServerUnaryReactor* TraceRays(Context* context, const Bytes* request,
                                       Bytes* reply) override;
   grpc::ServerUnaryReactor* GetStats(Context* context, const Bytes* request, Bytes* reply) override;
+  grpc::ServerUnaryReactor* GetLimits(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
 
  private:
   Backend& backend_;

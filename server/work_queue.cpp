@@ -38,6 +38,11 @@ void WorkQueue::Submit(Job job) {
   changed_.notify_one();
 }
 
+size_t WorkQueue::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 void WorkQueue::Run() {
   for (;;) {
     Job job;

@@ -30,11 +30,14 @@ class WorkQueue {
   // For callers whose number is bounded elsewhere and who submit one job at a time.
   void Submit(Job job);
 
+  // Jobs that wait.
+  size_t waiting() const;
+
  private:
   void Run();
 
   const size_t max_waiting_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   // Guarded by mutex_.
   std::deque<Job> waiting_;

@@ -43,6 +43,31 @@ absl::StatusOr<Camera> FindCamera(const v1::SceneInfo& scene, const std::string&
       absl::StrCat("no camera '", name, "' in scene '", scene.name(), "': ", CameraNames(scene)));
 }
 
+void AddTlsFlags(CLI::App& app, ConnectionFlags& flags, CLI::Option* local) {
+  constexpr const char* kGroup = "Where";
+  auto* ca = app.add_option("--tls-ca", flags.tls_ca,
+                            "Connect by TLS; the server's certificate must lead to one of these")
+                 ->type_name("FILE")
+                 ->excludes(local)
+                 ->group(kGroup);
+  auto* cert = app.add_option("--tls-cert", flags.tls_cert,
+                              "Certificate to show to a server that wants to see one")
+                   ->type_name("FILE")
+                   ->needs(ca)
+                   ->group(kGroup);
+  auto* key = app.add_option("--tls-key", flags.tls_key, "Its key")
+                  ->type_name("FILE")
+                  ->needs(cert)
+                  ->group(kGroup);
+  cert->needs(key);
+  app.add_option("--token-file", flags.token_file,
+                 "File that holds the token to show; without, LINETREE_TOKEN in the environment "
+                 "may hold it")
+      ->type_name("FILE")
+      ->excludes(local)
+      ->group(kGroup);
+}
+
 }  // namespace
 
 void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags) {
@@ -59,6 +84,7 @@ void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags) {
   auto* local = app.add_flag("--local", flags.local, "Render in this process, without a server")
                     ->excludes(server)
                     ->group(kGroup);
+  AddTlsFlags(app, flags, local);
   app.add_option("--threads", flags.threads, "Threads that render; 0: as many as the machine has")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))

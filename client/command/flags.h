@@ -18,6 +18,11 @@ namespace linetree {
 struct ConnectionFlags {
   std::string server = "127.0.0.1:50051";
   double connect_timeout_s = 5;
+  // Files in PEM; tls_ca is what makes it TLS.
+  std::string tls_ca{};
+  std::string tls_cert{};
+  std::string tls_key{};
+  std::string token_file{};  // empty: what LINETREE_TOKEN holds, if anything
   bool local = false;
   int threads = 0;                                      // --local only; 0: all hardware threads
   uint64_t memory_bytes = CacheOptions{}.memory_bytes;  // --local only

@@ -126,4 +126,8 @@ absl::StatusOr<v1::GetStatsReply> LocalClient::GetStats(const std::string& scene
   return reply;
 }
 
+absl::StatusOr<v1::GetLimitsReply> LocalClient::GetLimits() {
+  return absl::UnimplementedError("--limits: a server has limits, --local has none to show");
+}
+
 }  // namespace linetree

@@ -43,6 +43,8 @@ class LocalClient : public Client {
   absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                      const RenderOptions& options) override;
   absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) override;
+  // UNIMPLEMENTED: limits are a server's.
+  absl::StatusOr<v1::GetLimitsReply> GetLimits() override;
 
  private:
   const uint64_t memory_bytes_;

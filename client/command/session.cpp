@@ -2,21 +2,72 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/command/local_client.h"
+#include "core/io/read_file.h"
 
 namespace linetree {
 
+namespace {
+
+constexpr uint64_t kMaxSecretBytes = uint64_t{1} << 20;
+
+// Nothing for no file.
+absl::StatusOr<std::string> ReadOptional(absl::string_view flag, const std::string& path) {
+  if (path.empty()) return std::string();
+  auto text = ReadFileAtMost(path, kMaxSecretBytes);
+  if (text.ok()) return text;
+  return absl::Status(text.status().code(), absl::StrCat(flag, ": ", text.status().message()));
+}
+
+// One word, whatever stands around it.
+absl::StatusOr<std::string> ReadToken(const std::string& path) {
+  const char* environment = std::getenv("LINETREE_TOKEN");
+  if (path.empty()) return std::string(environment == nullptr ? "" : environment);
+  auto text = ReadOptional("--token-file", path);
+  if (!text.ok()) return text.status();
+  const absl::string_view token = absl::StripAsciiWhitespace(*text);
+  if (token.empty() || token.find_first_of(" \t\r\n") != absl::string_view::npos) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--token-file: ", path, ": expected a token and nothing else"));
+  }
+  return std::string(token);
+}
+
+}  // namespace
+
+absl::StatusOr<ClientOptions> ReadClientOptions(const ConnectionFlags& flags) {
+  auto ca = ReadOptional("--tls-ca", flags.tls_ca);
+  if (!ca.ok()) return ca.status();
+  auto cert = ReadOptional("--tls-cert", flags.tls_cert);
+  if (!cert.ok()) return cert.status();
+  auto key = ReadOptional("--tls-key", flags.tls_key);
+  if (!key.ok()) return key.status();
+  auto token = ReadToken(flags.token_file);
+  if (!token.ok()) return token.status();
+  if (!flags.tls_ca.empty() && ca->empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--tls-ca: ", flags.tls_ca, ": expected certificates in PEM"));
+  }
+  return ClientOptions{
+      .connect_timeout_ms = std::chrono::milliseconds(std::lround(1000 * flags.connect_timeout_s)),
+      .tls_ca_pem = *std::move(ca),
+      .tls_cert_pem = *std::move(cert),
+      .tls_key_pem = *std::move(key),
+      .token = *std::move(token)};
+}
+
 absl::StatusOr<std::unique_ptr<Client>> Connect(const ConnectionFlags& flags) {
   if (flags.local) return std::make_unique<LocalClient>(flags.threads, flags.memory_bytes);
-  ClientOptions options;
-  options.connect_timeout_ms =
-      std::chrono::milliseconds(std::lround(1000 * flags.connect_timeout_s));
-  return Client::Connect(flags.server, options);
+  const auto options = ReadClientOptions(flags);
+  if (!options.ok()) return options.status();
+  return Client::Connect(flags.server, *options);
 }
 
 bool IsSceneFile(const std::string& scene) {

@@ -16,6 +16,9 @@ struct Session {
   v1::SceneInfo scene;  // scene.name() is what calls take
 };
 
+// What the flags name, read. Errors name the flag and the file.
+absl::StatusOr<ClientOptions> ReadClientOptions(const ConnectionFlags& flags);
+
 // --server or --local.
 absl::StatusOr<std::unique_ptr<Client>> Connect(const ConnectionFlags& flags);
 

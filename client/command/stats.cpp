@@ -1,5 +1,6 @@
 // linetree stats: what a server holds and has done.
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "absl/strings/str_cat.h"
@@ -8,6 +9,7 @@
 #include "client/command/flags.h"
 #include "client/command/session.h"
 #include "client/command/table.h"
+#include "core/io/layer_colors.h"
 #include "core/io/stats_json.h"
 #include "core/io/wire.h"
 
@@ -19,17 +21,28 @@ struct StatsFlags {
   SceneFlags scene;
   bool json = false;
   bool objects = false;
+  bool limits = false;
 };
 
 using SceneStats = v1::GetStatsReply::SceneStats;
+
+nlohmann::json AnswersJson(const v1::GetStatsReply::AnswerCounts& answers) {
+  return {{"answers", answers.answers()},
+          {"sources",
+           std::map<std::string, uint64_t>(answers.sources().begin(), answers.sources().end())},
+          {"verdicts",
+           std::map<std::string, uint64_t>(answers.verdicts().begin(), answers.verdicts().end())}};
+}
 
 nlohmann::json SceneStatsJson(const SceneStats& scene) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : scene.objects()) {
     nlohmann::json cells = nlohmann::json::object();
     for (const auto& [verdict, count] : object.cells()) cells[verdict] = count;
-    objects.push_back(
-        {{"object", object.object()}, {"name", object.name()}, {"cells", std::move(cells)}});
+    objects.push_back({{"object", object.object()},
+                       {"name", object.name()},
+                       {"cells", std::move(cells)},
+                       {"answers", AnswersJson(object.answers())}});
   }
   nlohmann::json memory = nlohmann::json::array();
   for (const auto& part : scene.memory()) {
@@ -45,6 +58,7 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
           {"cells", scene.cells()},
           {"memory", std::move(memory)},
           {"objects", std::move(objects)},
+          {"answers", AnswersJson(scene.answers())},
           {"audit",
            {{"checked", scene.audit().checked()},
             {"violations", scene.audit().violations()},
@@ -122,12 +136,36 @@ std::string AuditTable(const v1::GetStatsReply& reply) {
   return table.ToString();
 }
 
+// Answers by source, a row for every object that was seen.
+std::string AnswerTable(const SceneStats& scene) {
+  std::vector<TableColumn> columns = {{"object"}};
+  for (const auto& source : SourceLegend()) {
+    columns.push_back({std::string(source.label), Align::kRight});
+  }
+  Table table(std::move(columns));
+  const auto add = [&table](std::string name, const v1::GetStatsReply::AnswerCounts& answers) {
+    std::vector<std::string> row = {std::move(name)};
+    for (const auto& source : SourceLegend()) {
+      const auto found = answers.sources().find(std::string(source.label));
+      row.push_back(found == answers.sources().end() ? "" : Grouped(found->second));
+    }
+    table.AddRow(std::move(row));
+  };
+  for (const auto& object : scene.objects()) {
+    if (object.answers().answers() == 0) continue;
+    add(absl::StrCat(object.object(), " ", object.name()), object.answers());
+  }
+  add("all", scene.answers());
+  return table.ToString();
+}
+
 // Cells by verdict, a row for every object that has any.
 std::string ObjectTable(const SceneStats& scene) {
   std::vector<TableColumn> columns = {{"object"}};
   for (const auto& name : kVerdictNames) columns.push_back({std::string(name), Align::kRight});
   Table table(std::move(columns));
   for (const auto& object : scene.objects()) {
+    if (object.cells().empty()) continue;
     std::vector<std::string> row = {absl::StrCat(object.object(), " ", object.name())};
     for (const auto& name : kVerdictNames) {
       const auto found = object.cells().find(std::string(name));
@@ -149,7 +187,23 @@ absl::StatusOr<v1::GetStatsReply> GetReply(const StatsFlags& flags) {
   return session->client->GetStats(session->scene.name());
 }
 
+absl::StatusOr<int> Limits(const StatsFlags& flags) {
+  absl::StatusOr<std::unique_ptr<Client>> client = Connect(flags.connection);
+  if (!client.ok()) return client.status();
+  const absl::StatusOr<v1::GetLimitsReply> reply = (*client)->GetLimits();
+  if (!reply.ok()) return reply.status();
+  nlohmann::json json = nlohmann::json::array();
+  Table table({{"limit"}, {"value", Align::kRight}, {"of what"}});
+  for (const auto& limit : reply->limits()) {
+    json.push_back({{"name", limit.name()}, {"value", limit.value()}, {"bounds", limit.bounds()}});
+    table.AddRow({limit.name(), Grouped(limit.value()), limit.bounds()});
+  }
+  std::cout << (flags.json ? json.dump(2) + "\n" : table.ToString());
+  return kExitOk;
+}
+
 absl::StatusOr<int> Stats(const StatsFlags& flags) {
+  if (flags.limits) return Limits(flags);
   const absl::StatusOr<v1::GetStatsReply> reply = GetReply(flags);
   if (!reply.ok()) return reply.status();
   if (flags.json) {
@@ -168,7 +222,9 @@ absl::StatusOr<int> Stats(const StatsFlags& flags) {
   }
   if (!flags.objects) return kExitOk;
   for (const SceneStats& scene : reply->scenes()) {
-    std::cout << "\nCells of " << scene.scene() << " by verdict\n" << ObjectTable(scene);
+    std::cout << "\nCells of " << scene.scene() << " by verdict\n"
+              << ObjectTable(scene) << "\nAnswers of " << scene.scene() << " by source\n"
+              << AnswerTable(scene);
   }
   return kExitOk;
 }
@@ -180,13 +236,16 @@ void AddStats(CLI::App& parent, Commands& commands) {
   CLI::App* app = parent.add_subcommand("stats", "What a server holds and has done");
   AddConnectionFlags(*app, flags->connection);
   AddSceneFlags(*app, flags->scene, /*required=*/false);
-  app->add_flag("--objects", flags->objects, "Also the cells of every object by verdict")
+  app->add_flag("--objects", flags->objects,
+                "Also the cells of every object by verdict, and its answers by source")
       ->group("Output");
+  app->add_flag("--limits", flags->limits, "The server's limits instead")->group("Output");
   app->add_flag("--json", flags->json, "Everything as JSON")->group("Output");
   app->footer(
       "Examples:\n"
       "  linetree stats\n"
       "  linetree stats --server 10.0.0.7:50051 --scene room --objects\n"
+      "  linetree stats --limits\n"
       "  linetree stats --json");
   commands.push_back({app, [flags] { return Stats(*flags); }});
 }

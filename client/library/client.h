@@ -1,6 +1,12 @@
-// The typed client: every call has a deadline, refusals come back as absl::Status with the server's
-// words. UNAVAILABLE and "no room now" are retried as long as nothing of the answer has come (calls
-// change nothing that a second try would change again).
+// The typed client of a linetreed.
+//
+// Every call has a deadline. What fails for want of room (RESOURCE_EXHAUSTED with a hint) or of a
+// connection (UNAVAILABLE) is tried again, with delays that grow and are drawn at random, as long
+// as the deadline leaves room for it: no call changes anything that a second one would change
+// again. A lost connection comes back by itself; a flight goes on with the first frame that is
+// missing. Other errors, and the last of many, come back as absl::Status with the server's words.
+//
+// client/example/orbit.cpp is an example.
 //
 // Thread safety: all methods may be called from any thread.
 #pragma once
@@ -12,6 +18,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/library/retry.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 
@@ -19,14 +26,22 @@ namespace linetree {
 
 struct ClientOptions {
   std::chrono::milliseconds connect_timeout_ms{5000};
-  // Of one call; of one frame for Fly.
+  // Of one call with all its attempts; of one frame for Fly.
   std::chrono::milliseconds call_timeout_ms{600'000};
-  int max_attempts = 3;  // in [1, 5]
+  RetryOptions retry{};
+  // TLS when the roots that the server's certificate must lead to are given; certificate and key
+  // for servers that want to see one. All in PEM.
+  std::string tls_ca_pem{};
+  std::string tls_cert_pem{};
+  std::string tls_key_pem{};
+  // Shown with every call; empty: none.
+  std::string token{};
 };
 
 class Client {
  public:
-  // `address` is host:port. Fails with UNAVAILABLE when nobody answers within connect_timeout_ms.
+  // `address` is host:port. Fails with UNAVAILABLE when nobody answers within connect_timeout_ms,
+  // which by TLS may also mean that one of the two does not trust the other.
   static absl::StatusOr<std::unique_ptr<Client>> Connect(const std::string& address,
                                                          const ClientOptions& options = {});
   virtual ~Client() = default;
@@ -42,7 +57,8 @@ class Client {
                                             const std::string& camera_name, bool all_layers,
                                             const Progress& progress) = 0;
 
-  // Sends the requests in order over one stream and hands each frame to `on_frame` as it arrives.
+  // Sends the requests in order over one stream and hands each frame to `on_frame` as it arrives,
+  // each once and in order. When the stream breaks, another takes over.
   virtual absl::Status Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
                            bool all_layers,
                            const std::function<void(size_t index, Frame frame)>& on_frame) = 0;
@@ -51,6 +67,7 @@ class Client {
                                              const RenderOptions& options) = 0;
   // Empty scene name: all scenes.
   virtual absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) = 0;
+  virtual absl::StatusOr<v1::GetLimitsReply> GetLimits() = 0;
 };
 
 }  // namespace linetree

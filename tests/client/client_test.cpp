@@ -8,6 +8,8 @@
 
 #include <atomic>
 #include <future>
+#include <thread>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/library/status.h"
@@ -36,21 +38,28 @@ class ScriptedService : public v1::RadianceCache::Service {
 
   grpc::Status RenderFrame(grpc::ServerContext*, const v1::RenderFrameRequest*,
                            grpc::ServerWriter<v1::FrameChunk>* writer) override {
-    for (const auto& chunk : chunks) writer->Write(chunk);
-    return grpc::Status::OK;
+    const bool breaks = ++calls <= failures;
+    const size_t count = breaks ? chunks.size() / 2 : chunks.size();
+    for (size_t i = 0; i < count; ++i) writer->Write(chunks[i]);
+    return breaks ? grpc::Status(failure, "not now") : grpc::Status::OK;
   }
 
   grpc::Status Fly(grpc::ServerContext*,
                    grpc::ServerReaderWriter<v1::FlyReply, v1::FlyRequest>* stream) override {
     v1::FlyRequest request;
+    bool first = true;
     while (stream->Read(&request)) {
+      if (std::exchange(first, false)) streams_begin_with.push_back(request.sequence());
       v1::FlyReply reply;
       reply.set_sequence(request.sequence() + sequence_error);
       for (const auto& chunk : chunks) {
         *reply.mutable_chunk() = chunk;
         stream->Write(reply);
       }
-      if (++flown == frames_before_failure) return {failure, "engine failure"};
+      if (++flown == frames_before_failure) {
+        frames_before_failure += frames_between_failures;
+        return {failure, "engine failure"};
+      }
     }
     return grpc::Status::OK;
   }
@@ -64,6 +73,8 @@ class ScriptedService : public v1::RadianceCache::Service {
   uint64_t sequence_error = 0;
   int flown = 0;
   int frames_before_failure = -1;
+  int frames_between_failures = 1 << 20;
+  std::vector<uint64_t> streams_begin_with;
 };
 
 std::vector<v1::FrameChunk> ChunksOf(int width, int height) {
@@ -87,12 +98,20 @@ FrameRequest RequestOf(int width, int height) {
 
 class ClientTest : public testing::Test {
  protected:
-  ClientTest() {
+  // Retries without waiting much.
+  static constexpr RetryOptions kQuick{.max_attempts = 3,
+                                       .first_delay_ms = std::chrono::milliseconds(1),
+                                       .max_delay_ms = std::chrono::milliseconds(2)};
+
+  ClientTest() { Listen("127.0.0.1:0"); }
+
+  void Listen(const std::string& where) {
     grpc::ServerBuilder builder;
     int port = 0;
-    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.AddListeningPort(where, grpc::InsecureServerCredentials(), &port);
     builder.RegisterService(&service_);
     server_ = builder.BuildAndStart();
+    ASSERT_NE(server_, nullptr);
     address_ = absl::StrCat("127.0.0.1:", port);
   }
 
@@ -117,7 +136,7 @@ TEST_F(ClientTest, UnavailableIsTriedAgain) {
 
 TEST_F(ClientTest, ButNotForEver) {
   service_.failures = 100;
-  const auto info = Connect({.max_attempts = 2})->DescribeScene("room");
+  const auto info = Connect({.retry = {.max_attempts = 2}})->DescribeScene("room");
   EXPECT_TRUE(absl::IsUnavailable(info.status()));
   EXPECT_THAT(std::string(info.status().message()), HasSubstr("not now"));
   EXPECT_EQ(service_.calls, 2);
@@ -125,7 +144,7 @@ TEST_F(ClientTest, ButNotForEver) {
 
 TEST_F(ClientTest, OneAttemptIsOne) {
   service_.failures = 1;
-  EXPECT_FALSE(Connect({.max_attempts = 1})->DescribeScene("room").ok());
+  EXPECT_FALSE(Connect({.retry = {.max_attempts = 1}})->DescribeScene("room").ok());
   EXPECT_EQ(service_.calls, 1);
 }
 
@@ -175,6 +194,16 @@ TEST_F(ClientTest, AWholeFrameArrives) {
   const auto frame = Connect()->RenderFrame("room", RequestOf(100, 70), "", false, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
   EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
+}
+
+TEST_F(ClientTest, AFrameThatBreaksOffIsAskedForAgain) {
+  service_.chunks = ChunksOf(100, 70);
+  service_.failures = 1;
+  const auto frame =
+      Connect({.retry = kQuick})->RenderFrame("room", RequestOf(100, 70), "", false, nullptr);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
+  EXPECT_EQ(service_.calls, 2);
 }
 
 TEST_F(ClientTest, AFrameWithoutItsEndIsDataLoss) {
@@ -229,6 +258,44 @@ TEST_F(ClientTest, AFlightThatFailsHasTheServersWords) {
   EXPECT_TRUE(absl::IsNotFound(status)) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("engine failure"));
   EXPECT_EQ(frames, 3);
+}
+
+TEST_F(ClientTest, AFlightGoesOnWithTheFirstFrameThatIsMissing) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.frames_before_failure = 3;
+  service_.frames_between_failures = 4;
+  size_t expected = 0;
+  // Each stream brings something on, so there may be more of them than attempts.
+  const auto status = Connect({.retry = kQuick})
+                          ->Fly("room", std::vector<FrameRequest>(20, RequestOf(8, 8)), false,
+                                [&](size_t index, const Frame&) { EXPECT_EQ(index, expected++); });
+  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_EQ(expected, 20u);
+  EXPECT_EQ(service_.streams_begin_with, (std::vector<uint64_t>{0, 3, 7, 11, 15, 19}));
+}
+
+TEST_F(ClientTest, AFlightThatGetsNowhereEnds) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.chunks.pop_back();
+  service_.frames_before_failure = 1;
+  service_.frames_between_failures = 1;
+  const auto status =
+      Connect({.retry = kQuick})->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) {
+      });
+  EXPECT_TRUE(absl::IsUnavailable(status)) << status;
+  EXPECT_EQ(service_.streams_begin_with.size(), static_cast<size_t>(kQuick.max_attempts));
+}
+
+TEST_F(ClientTest, AServerThatComesBackIsFound) {
+  service_.chunks = ChunksOf(8, 8);
+  const auto client = Connect({.retry = kQuick});
+  EXPECT_TRUE(client->DescribeScene("room").ok());
+  server_->Shutdown();
+  server_.reset();
+  std::thread call([&] { EXPECT_TRUE(client->DescribeScene("room").ok()); });
+  Listen(address_);
+  call.join();
+  EXPECT_TRUE(client->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) {}).ok());
 }
 
 TEST_F(ClientTest, FramesOutOfOrderAreDataLoss) {

@@ -89,8 +89,8 @@ TEST(EndingsTest, AReaderThatGoesAwayGivesItsMemoryBack) {
     // The client's retries give the server time to notice.
     FrameRequest whole;
     whole.width = whole.height = 1000;
-    const auto frame =
-        running.NewClient({.max_attempts = 5})->RenderFrame("ball", whole, "front", false, nullptr);
+    const auto frame = running.NewClient({.retry = {.max_attempts = 5}})
+                           ->RenderFrame("ball", whole, "front", false, nullptr);
     EXPECT_TRUE(frame.ok()) << frame.status();
   }
 }
@@ -163,7 +163,7 @@ TEST(EndingsTest, FlightsAreCountedAndGiveTheirPlaceBack) {
   ServerOptions options;
   options.limits.max_flights = 1;
   test::RunningServer running(options);
-  const auto client = running.NewClient({.max_attempts = 5});
+  const auto client = running.NewClient({.retry = {.max_attempts = 5}});
   for (int round = 0; round < 3; ++round) {
     grpc::ClientContext context, refused_context;
     for (auto* call : {&context, &refused_context}) {

@@ -16,10 +16,13 @@ TEST(ServerOptionsTest, DefaultsAreValidAndStayOnThisMachine) {
 }
 
 TEST(ServerOptionsTest, LoopbackOrNot) {
-  for (const char* listen : {"127.0.0.1:1", "localhost:1", "[::1]:1", "unix:socket"}) {
+  for (const char* listen :
+       {"127.0.0.1:1", "localhost:1", "[::1]:1", "unix:socket", "127.1.2.3:0"}) {
     EXPECT_TRUE(IsLoopback(listen)) << listen;
   }
-  for (const char* listen : {"0.0.0.0:1", "[::]:1", "10.1.2.3:1", "host:1"}) {
+  for (const char* listen :
+       {"0.0.0.0:1", "[::]:1", "10.1.2.3:1", "host:1", "127.0.0.1.example.org:1", "127.0.0.1",
+        "localhost.example.org:1", "127.0.0.1:1,10.1.2.3", "dns:///127.0.0.1:1", ""}) {
     EXPECT_FALSE(IsLoopback(listen)) << listen;
   }
 }
@@ -62,6 +65,22 @@ const BadOption kBadOptions[] = {
        o.scenes = {{"a", "a.nff"}, {"a", "b.nff"}};
      }},
     {"--listen", [](Options& o) { o.listen.clear(); }},
+    {"--listen", [](Options& o) { o.listen = "0.0.0.0:1"; }},
+    {"--listen",
+     [](Options& o) {
+       o.listen = "0.0.0.0:1";
+       o.tls = {"cert", "key", ""};
+     }},
+    {"--listen",
+     [](Options& o) {
+       o.listen = "0.0.0.0:1";
+       o.token_file = "tokens";
+     }},
+    {"--http", [](Options& o) { o.http = "0.0.0.0:1"; }},
+    {"--http", [](Options& o) { o.http = "noport"; }},
+    {"--tls-cert", [](Options& o) { o.tls.cert = "cert"; }},
+    {"--tls-cert", [](Options& o) { o.tls.key = "key"; }},
+    {"--tls-client-ca", [](Options& o) { o.tls.client_ca = "ca"; }},
     {"--threads", [](Options& o) { o.threads = -1; }},
     {"--threads", [](Options& o) { o.threads = 100'000; }},
     {"--render-slots", [](Options& o) { o.render_slots = 0; }},
@@ -72,6 +91,18 @@ const BadOption kBadOptions[] = {
     {"--drain-timeout-ms", [](Options& o) { o.drain_timeout_ms = std::chrono::milliseconds(-1); }},
 };
 INSTANTIATE_TEST_SUITE_P(All, BadOptions, testing::ValuesIn(kBadOptions));
+
+TEST(ServerOptionsTest, OtherMachinesComeInByTlsAndTokenOrWhenToldSo) {
+  Options options;
+  options.listen = options.http = "0.0.0.0:1";
+  options.insecure = true;
+  EXPECT_TRUE(ValidateServerOptions(options).ok());
+  options.insecure = false;
+  EXPECT_FALSE(ValidateServerOptions(options).ok());
+  options.tls = {"cert", "key", ""};
+  options.token_file = "tokens";
+  EXPECT_TRUE(ValidateServerOptions(options).ok()) << ValidateServerOptions(options);
+}
 
 TEST(ServerOptionsTest, SceneFlagsAreNameAndFile) {
   const auto scene = ParseSceneFlag("room=scenes/a=b.nff");

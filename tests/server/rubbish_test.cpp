@@ -248,7 +248,7 @@ TEST_F(Rubbish, UnknownScenesAreNotFoundByTheSmallCalls) {
 
 TEST_F(Rubbish, MalformedMessagesAreInvalidForEveryMethod) {
   for (const std::string method : {"LoadScene", "ListScenes", "DescribeScene", "UnloadScene",
-                                   "RenderFrame", "Fly", "TraceRays", "GetStats"}) {
+                                   "RenderFrame", "Fly", "TraceRays", "GetStats", "GetLimits"}) {
     const grpc::Slice garbage("\xff\xff\xff\xff half a message");
     grpc::ClientContext context;
     const auto status = Send(method, grpc::ByteBuffer(&garbage, 1), context);

@@ -45,16 +45,17 @@ inline std::shared_ptr<const Scene> BuiltBallScene() {
 
 class RunningServer {
  public:
-  // Listens on a free port whatever the options say.
+  // Listens on a free port whatever the options say. `client` is how client() connects.
   explicit RunningServer(
       ServerOptions options = {},
-      std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("no sinks")) {
+      std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("no sinks"),
+      const ClientOptions& client = {}) {
     options.listen = "127.0.0.1:0";
     options.threads = 2;
     auto server = Server::Start(options, std::move(log));
     LT_CHECK(server.ok());
     server_ = *std::move(server);
-    client_ = NewClient();
+    client_ = NewClient(client);
     LT_CHECK(client_->LoadScene("ball", BallScene(), /*replace=*/false).ok());
     channel_ = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
     stub_ = v1::RadianceCache::NewStub(channel_);

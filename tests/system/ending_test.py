@@ -62,6 +62,46 @@ class Signals(unittest.TestCase):
             self.assertEqual(server.process.wait(timeout=PATIENCE_S), 0)
 
 
+class Draining(unittest.TestCase):
+    def slow_frame(self, server):
+        """A frame whose client has read its beginning and reads no more."""
+        server.load_ball()
+        chunks = server.stub.RenderFrame(small_frame(width=1500, height=1500), timeout=PATIENCE_S)
+        next(chunks)
+        return chunks
+
+    def test_it_is_not_ready_but_lives_until_all_is_done(self):
+        with served.Served("--http", "127.0.0.1:0", "--drain-timeout-ms", "3600000") as server:
+            chunks = self.slow_frame(server)
+            server.process.send_signal(signal.SIGTERM)
+            url = f"http://{server.http}"
+            served.wait_until(lambda: served.fetch(f"{url}/readyz")[0] == 503)
+            self.assertEqual(served.fetch(f"{url}/livez")[0], 200)
+            with grpc.insecure_channel(server.address) as channel:
+                stub = served.service_pb2_grpc.RadianceCacheStub(channel)
+                with self.assertRaises(grpc.RpcError) as caught:
+                    stub.ListScenes(service_pb2.ListScenesRequest(), timeout=PATIENCE_S)
+            self.assertEqual(caught.exception.code(), grpc.StatusCode.UNAVAILABLE)
+            self.assertIsNone(server.process.poll())
+            self.assertEqual(frame_ends(chunks), 1)
+            self.assertEqual(server.process.wait(timeout=PATIENCE_S), 0)
+
+    def test_what_is_not_done_in_time_is_cancelled(self):
+        with served.Served("--drain-timeout-ms", "100") as server:
+            chunks = self.slow_frame(server)
+            self.assertEqual(server.stop(), 0)
+            with self.assertRaises(grpc.RpcError):
+                frame_ends(chunks)
+
+    def test_a_second_signal_ends_it_at_once(self):
+        with served.Served("--http", "127.0.0.1:0", "--drain-timeout-ms", "3600000") as server:
+            chunks = self.slow_frame(server)
+            server.process.send_signal(signal.SIGTERM)
+            served.wait_until(lambda: served.fetch(f"http://{server.http}/readyz")[0] == 503)
+            self.assertEqual(server.stop(), 128 + signal.SIGTERM)
+            chunks.cancel()
+
+
 class Vanishing(unittest.TestCase):
     def test_a_client_that_is_killed_mid_stream_does_no_harm(self):
         with served.Served() as server:

@@ -3,15 +3,25 @@
 import contextlib
 import os
 import pathlib
+import re
 import signal
+import ssl
 import subprocess
 import sys
 import tempfile
+import time
+import urllib.error
+import urllib.request
 
-import grpc
+# An idle client hears of a server that stops, and answers, this often; else every 5 seconds.
+os.environ["GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS"] = "100"
+# pylint: disable=wrong-import-position
+import grpc  # noqa: E402
 
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = pathlib.Path(os.environ["LINETREE_PROGRAMS"]) / "linetreed"
+PROGRAMS = pathlib.Path(os.environ["LINETREE_PROGRAMS"])
+PROGRAM = PROGRAMS / "linetreed"
+SANITIZED = b"__asan_init" in PROGRAM.read_bytes()
 SERVICE = "linetree.v1.RadianceCache"
 # Nothing here takes this long; a hang shall end as a failure.
 PATIENCE_S = 120
@@ -25,29 +35,34 @@ subprocess.run(
     check=True)
 sys.path.insert(0, STUBS)
 
-# pylint: disable=wrong-import-position
 from linetree.v1 import scene_pb2, service_pb2, service_pb2_grpc  # noqa: E402
 
 SCENE_TEXT = (pathlib.Path(__file__).parent / "ball.textproto").read_text()
 
 
 class Served:
-    """Use it in a with statement."""
+    """Use it in a with statement. `popen` goes to subprocess.Popen."""
 
-    def __init__(self, *flags):
+    def __init__(self, *flags, listen="127.0.0.1:0", credentials=None, **popen):
         # Leaving the block must not depend on what the test did to the process.
         self.process = subprocess.Popen(
-            [PROGRAM, "--listen", "127.0.0.1:0", "--threads", "2", *flags],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            [PROGRAM, "--listen", listen, "--threads", "2", *flags],
+            **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, **popen})
+        self.address = self._line("listening on ")
+        self.http = self._line("http on ") if "--http" in flags else None
+        options = [("grpc.max_receive_message_length", -1)]
+        if credentials is None:
+            self.channel = grpc.insecure_channel(self.address, options)
+        else:
+            self.channel = grpc.secure_channel(self.address, credentials, options)
+        self.stub = service_pb2_grpc.RadianceCacheStub(self.channel)
+
+    def _line(self, prefix):
         line = self.process.stdout.readline()
-        prefix = "listening on "
         if not line.startswith(prefix):
             raise AssertionError(f"expected '{prefix}...', got {line!r}: "
-                                 + self.process.communicate()[1])
-        self.address = line[len(prefix):].strip()
-        self.channel = grpc.insecure_channel(
-            self.address, [("grpc.max_receive_message_length", -1)])
-        self.stub = service_pb2_grpc.RadianceCacheStub(self.channel)
+                                 + str(self.process.communicate()[1]))
+        return line[len(prefix):].strip()
 
     def __enter__(self):
         return self
@@ -69,6 +84,35 @@ class Served:
         """Sends the signal; what the process returns."""
         self.process.send_signal(signal_number)
         return self.process.wait(timeout=PATIENCE_S)
+
+
+def peak_bytes(process):
+    """The most memory that the process has had."""
+    text = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+    return int(re.search(r"VmHWM:\s+(\d+) kB", text)[1]) << 10
+
+
+def fetch(url, **headers):
+    """Status and text of a page; https without looking at the certificate."""
+    context = ssl.create_default_context()
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    try:
+        with urllib.request.urlopen(urllib.request.Request(url, headers=headers),
+                                    timeout=PATIENCE_S, context=context) as page:
+            return page.status, page.read().decode()
+    except urllib.error.HTTPError as error:
+        with error:
+            return error.code, error.read().decode()
+
+
+def wait_until(condition):
+    """Asks again and again until it holds."""
+    end = time.monotonic() + PATIENCE_S
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError("waited in vain")
+        time.sleep(0.01)
 
 
 def small_frame(**fields):
