@@ -33,6 +33,7 @@ void AddFly(CLI::App& parent, Commands& commands);
 void AddRays(CLI::App& parent, Commands& commands);
 void AddStats(CLI::App& parent, Commands& commands);
 void AddScene(CLI::App& parent, Commands& commands);
+void AddSceneEdit(CLI::App& scene, Commands& commands);
 void AddCompare(CLI::App& parent, Commands& commands);
 void AddLoad(CLI::App& parent, Commands& commands);
 // `bench`: one command for each measurement.

@@ -54,6 +54,10 @@ absl::StatusOr<v1::SceneInfo> LocalClient::DescribeScene(const std::string& name
   return SceneInfoToWire(name, (*host)->scene(), (*host)->CacheBytes());
 }
 
+absl::StatusOr<v1::UpdateSceneReply> LocalClient::UpdateScene(const v1::UpdateSceneRequest&) {
+  return absl::FailedPreconditionError("--local: scenes of a server are edited, files by hand");
+}
+
 absl::Status LocalClient::UnloadScene(const std::string& name) {
   HostPointer removed;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);

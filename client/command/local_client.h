@@ -34,6 +34,8 @@ class LocalClient : public Client {
   absl::StatusOr<std::vector<v1::SceneInfo>> ListScenes() override;
   absl::StatusOr<v1::SceneInfo> DescribeScene(const std::string& name) override;
   absl::Status UnloadScene(const std::string& name) override;
+  // FAILED_PRECONDITION: nobody else could see the edited scene.
+  absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request) override;
   absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
                                     const std::string& camera_name, bool all_layers,
                                     const Progress& progress) override;

@@ -1,4 +1,4 @@
-// linetree scene check|convert: scene files.
+// linetree scene check|convert|edit: scene files.
 #include <iostream>
 #include <map>
 #include <memory>
@@ -130,10 +130,12 @@ void AddConvert(CLI::App& scene, Commands& commands) {
 }  // namespace
 
 void AddScene(CLI::App& parent, Commands& commands) {
-  CLI::App* app = parent.add_subcommand("scene", "Check and convert scene files");
+  CLI::App* app =
+      parent.add_subcommand("scene", "Check and convert scene files, edit a server's scenes");
   app->require_subcommand(1);
   AddCheck(*app, commands);
   AddConvert(*app, commands);
+  AddSceneEdit(*app, commands);
 }
 
 }  // namespace linetree

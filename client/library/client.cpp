@@ -46,6 +46,15 @@ class GrpcClient final : public Client {
     return Call<v1::UnloadSceneReply>(&Stub::UnloadScene, request).status();
   }
 
+  absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request) override {
+    grpc::ClientContext context;
+    caller_.Prepare(context, caller_.DeadlineOf());
+    v1::UpdateSceneReply reply;
+    const auto status = Caller::StatusOf(stub_->UpdateScene(&context, request, &reply), context);
+    if (!status.ok()) return status;
+    return reply;
+  }
+
   absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                      const RenderOptions& options) override {
     auto reply = Call<v1::TraceRaysReply>(&Stub::TraceRays, RaysToWire(scene, rays, options));

@@ -2,9 +2,10 @@
 //
 // Every call has a deadline. What fails for want of room (RESOURCE_EXHAUSTED with a hint) or of a
 // connection (UNAVAILABLE) is tried again, with delays that grow and are drawn at random, as long
-// as the deadline leaves room for it: no call changes anything that a second one would change
-// again. A lost connection comes back by itself; a flight goes on with the first frame that is
-// missing. Other errors, and the last of many, come back as absl::Status with the server's words.
+// as the deadline leaves room for it: no such call changes anything that a second one would change
+// again (UpdateScene, which does, has one attempt). A lost connection comes back by itself; a
+// flight goes on with the first frame that is missing. Other errors, and the last of many, come
+// back as absl::Status with the server's words.
 //
 // client/example/orbit.cpp is an example.
 //
@@ -51,6 +52,9 @@ class Client {
   virtual absl::StatusOr<std::vector<v1::SceneInfo>> ListScenes() = 0;
   virtual absl::StatusOr<v1::SceneInfo> DescribeScene(const std::string& name) = 0;
   virtual absl::Status UnloadScene(const std::string& name) = 0;
+  // After UNAVAILABLE the scene's version says whether it was edited.
+  virtual absl::StatusOr<v1::UpdateSceneReply> UpdateScene(
+      const v1::UpdateSceneRequest& request) = 0;
 
   // `camera_name` is used when it is set, else request.camera. Layers are empty unless all_layers.
   virtual absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,

@@ -58,6 +58,25 @@ TEST_F(ServerCommand, ClassicalFramesAreThoseOfLocal) {
   EXPECT_EQ(a->scene_version, b->scene_version);
 }
 
+TEST_F(ServerCommand, ScenesAreEdited) {
+  Finished run = Run({"render", "--scene", SourceFile("scenes/blocker.textproto"), "--width", "16",
+                      "--height", "16"});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  const std::string edits = dir_.File("edits.textproto");
+  std::ofstream(edits) << "edits { remove_object { index: 0 } }\n";
+  run = Run({"scene", "edit", "--scene", "blocker", edits});
+  EXPECT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("blocker: version "));
+  std::ofstream(edits) << "edits { remove_object { index: 999 } }\n";
+  run = Run({"scene", "edit", "--scene", "blocker", edits});
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("edits[0].remove_object.index: expected a number below"));
+  std::ofstream(edits) << "edits { remove_objet {} }\n";
+  run = Run({"scene", "edit", "--scene", "blocker", edits});
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("edits.textproto:1:"));
+}
+
 TEST_F(ServerCommand, AFileIsLoadedUnderItsName) {
   const std::string peak = SourceFile("scenes/peak.textproto");
   Finished run = Run({"render", "--scene", peak, "--width", "16", "--height", "16"});
