@@ -1,5 +1,7 @@
 #include "core/cache/change_reach.h"
 
+#include <optional>
+
 #include "core/tree/candidate_search.h"
 #include "core/tree/shaft.h"
 
@@ -65,10 +67,14 @@ ChangeReach::ChangeReach(const Scene& now, const SceneChange& change)
 }
 
 bool ChangeReach::Crosses(const Box3& from, const Box3& to) const {
-  const Shaft shaft(from, to);
-  const double clearance = ClearanceOf(Together(from, to));
+  const Box3 both = Together(from, to);
+  const double clearance = ClearanceOf(both);
+  std::optional<Shaft> shaft;  // most places are far off
   for (const Box3& place : places_) {
-    if (!shaft.Misses(Widened(place, clearance))) return true;
+    const Box3 wide = Widened(place, clearance);
+    if (!wide.Overlaps(both)) continue;
+    if (!shaft) shaft.emplace(from, to);
+    if (!shaft->Misses(wide)) return true;
   }
   return false;
 }
@@ -86,6 +92,10 @@ bool ChangeReach::CrossesToLights(const Box3& from) const {
     if (Crosses(from, to)) return true;
   }
   return false;
+}
+
+bool ChangeReach::TouchesShadows(const Object& object) const {
+  return CrossesToLights(object.bounds);
 }
 
 bool ChangeReach::TouchesShadows(const SurfaceTree& tree, const SurfaceNode& node) const {

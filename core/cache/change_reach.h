@@ -32,6 +32,8 @@ class ChangeReach {
   // Whether what a cell of the object's linetree knows may be wrong now. Indices in `paths` are
   // those of the former scene.
   bool Touches(const PathTree& tree, const PathNode& node) const;
+  // Of any cell of an object's surface tree, and of one.
+  bool TouchesShadows(const Object& object) const;
   bool TouchesShadows(const SurfaceTree& tree, const SurfaceNode& node) const;
 
  private:

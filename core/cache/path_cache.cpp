@@ -281,8 +281,8 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
       Forest& own = OpenForest(forest->limits);
       own.last_used = forest->last_used;
       own.store.Adopt(forest->store, change, BudgetOf(own), [&](PathTree& tree) {
-        tree.cells().Prune(/*covers=*/false,
-                           [&](const PathNode& node) { return reach.Touches(tree, node); });
+        return tree.cells().Prune(/*covers=*/false,
+                                  [&](const PathNode& node) { return reach.Touches(tree, node); });
       });
       adopted.dropped += before;
     }

@@ -165,8 +165,9 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
   clock_ = former.clock_;
   if (change.lights) former.store_.Clear();
   store_.Adopt(former.store_, change, memory_bytes_, [&](SurfaceTree& tree) {
-    tree.cells().Prune(/*covers=*/true,
-                       [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });
+    if (!reach.TouchesShadows(tree.object())) return CellTree<SurfaceTraits>::Pruned();
+    return tree.cells().Prune(
+        /*covers=*/true, [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });
   });
   store_.Evict(EvictionTarget(memory_bytes_));
   const uint64_t kept = store_.cell_count();

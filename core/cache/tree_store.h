@@ -100,26 +100,35 @@ class TreeStore {
   }
 
   // Takes the trees of a former scene's store over, for the objects that are still there and not
-  // altered, without the cells that prune(Tree&) takes from them. The former store is
-  // empty afterwards, this one was before. The budget is the caller's affair. Renumber(now,
-  // Payload&) -> false where what it names is gone.
+  // altered, without what prune(Tree&) takes out of them, which it returns (CellTree::Pruned). The
+  // former store is empty afterwards, this one was before. The budget is the caller's affair.
+  // Renumber(now, Payload&) -> false where what it names is gone.
   template <class Fn>
   void Adopt(TreeStore& former, const SceneChange& change, uint64_t memory_bytes, Fn&& prune) {
     MakeIndex(memory_bytes);
-    for (size_t object = 0; object < former.trees_.size() && !trees_.empty(); ++object) {
+    cells_ += former.cells_;
+    byte_size_ += former.byte_size_ - former.IndexBytes();
+    for (size_t object = 0; object < former.trees_.size(); ++object) {
       const int32_t now = change.now[object];
-      if (!former.trees_[object] || now == SceneChange::kGone || change.altered[object]) continue;
+      if (!former.trees_[object]) continue;
+      Tree& old = *former.trees_[object];
+      if (trees_.empty() || now == SceneChange::kGone || change.altered[object]) {
+        byte_size_ -= old.CountBytes();
+        Subtract(old.cells().Prune(false, [](const Node&) { return true; }).cells, 0);
+        continue;
+      }
       auto tree = std::make_unique<Tree>(scene_.objects[static_cast<size_t>(now)]);
-      tree->cells() = std::move(former.trees_[object]->cells());
-      prune(*tree);
-      tree->cells().ForEach([&](Node& node) {
-        if (!change.keeps_indices) RenumberPayload(change.now, node);
-        cells_ += node.payload ? 1 : 0;
-      });
+      tree->cells() = std::move(old.cells());
+      const auto pruned = prune(*tree);
+      Subtract(pruned.cells, pruned.bytes);
+      if (!change.keeps_indices) {
+        const auto lost = tree->cells().Prune(
+            false, [&](const Node& node) { return !RenumberPayload(change.now, node); });
+        Subtract(lost.cells, lost.bytes);
+      }
       trees_[static_cast<size_t>(now)] = std::move(tree);
     }
     former.Clear();
-    byte_size_ = CountBytes();
   }
 
   void Clear() {
@@ -182,10 +191,14 @@ class TreeStore {
     });
     return parents;
   }
-  static void RenumberPayload(std::span<const int32_t> now, Node& node) {
+  static bool RenumberPayload(std::span<const int32_t> now, const Node& node) {
     using Payload = std::remove_const_t<typename decltype(node.payload)::element_type>;
     // Nobody else holds it: it may change before anybody sees it again.
-    if (node.payload && !Renumber(now, const_cast<Payload&>(*node.payload))) node.payload.reset();
+    return Renumber(now, const_cast<Payload&>(*node.payload));
+  }
+  void Subtract(uint64_t cells, uint64_t bytes) {
+    cells_ -= cells;
+    byte_size_ -= bytes;
   }
   // Of trees without children, those used longest ago first.
   void DropTrees(uint64_t target) {

@@ -89,14 +89,19 @@ class CellTree {
     for (Node& root : roots_) Visit(root, visit);
   }
 
+  // What was taken out of a tree.
+  struct Pruned {
+    uint64_t cells = 0;  // of which something was known
+    uint64_t bytes = 0;
+  };
   // What a cell knows is dropped where `touches` (const Node&, not asked without payload), and then
-  // blocks of leaves of which nothing is known any more. With `covers`, what touches no cell
-  // touches none in it. Returns how many it dropped.
+  // blocks of leaves of which nothing is known any more. With `covers`, what touches no cell touches
+  // none in it.
   template <class Fn>
-  uint64_t Prune(bool covers, Fn&& touches) {
-    uint64_t dropped = 0;
-    for (Node& root : roots_) Prune(root, covers, touches, dropped);
-    return dropped;
+  Pruned Prune(bool covers, Fn&& touches) {
+    Pruned pruned;
+    for (Node& root : roots_) Prune(root, covers, touches, pruned);
+    return pruned;
   }
 
   // Recomputed from scratch.
@@ -114,11 +119,12 @@ class CellTree {
     for (Node& child : *node.children) Visit(child, visit);
   }
   template <class Fn>
-  static void Prune(Node& node, bool covers, Fn& touches, uint64_t& dropped) {
+  static void Prune(Node& node, bool covers, Fn& touches, Pruned& pruned) {
     if (node.payload) {
       if (touches(std::as_const(node))) {
+        pruned.bytes += Node::BytesOf(node.payload.get());
+        ++pruned.cells;
         node.payload.reset();
-        ++dropped;
       } else if (covers) {
         return;
       }
@@ -126,10 +132,12 @@ class CellTree {
     if (!node.children) return;
     bool is_bare = true;
     for (Node& child : *node.children) {
-      Prune(child, covers, touches, dropped);
+      Prune(child, covers, touches, pruned);
       is_bare = is_bare && child.IsLeaf() && !child.payload;
     }
-    if (is_bare) node.children.reset();
+    if (!is_bare) return;
+    pruned.bytes += sizeof(*node.children);
+    node.children.reset();
   }
   static uint64_t BytesOf(const Node& node) {
     uint64_t bytes = node.ByteSize();

@@ -27,6 +27,7 @@ class SurfaceTree {
   // Keeps a reference to the object.
   explicit SurfaceTree(const Object& object);
 
+  const Object& object() const { return object_; }
   const SurfaceChart& chart() const { return chart_; }
   CellTree<SurfaceTraits>& cells() { return cells_; }
   const CellTree<SurfaceTraits>& cells() const { return cells_; }

@@ -9,7 +9,7 @@
 namespace linetree {
 namespace {
 
-constexpr int kSize = 96;
+constexpr int kSize = 128;
 
 std::shared_ptr<Scene> CrowdedScene(test::Random& random, int count) {
   auto scene = std::make_shared<Scene>(test::RandomScene(random, count, 3));
@@ -125,6 +125,61 @@ TEST(AdoptTest, EditedScenesAnswerAsIfTheyHadAlwaysBeenSo) {
   }
   EXPECT_GT(all.kept, 1000u);
   EXPECT_GT(all.dropped, 1000u);
+}
+
+// Balls in front of a mirror and on one, a third of them of glass: most of what is seen is seen by
+// way of something else, and a ball that moves comes and goes in what others show.
+std::shared_ptr<Scene> MirrorsAndBalls(test::Random& random) {
+  auto scene = std::make_shared<Scene>();
+  scene->ambient = {0.3, 0.3, 0.3};
+  scene->background = {0.2, 0.3, 0.4};
+  test::AddMaterial(*scene, test::Matte({0.6, 0.5, 0.4}));
+  test::AddMaterial(*scene, test::Mirror({0.8, 0.8, 0.8}));
+  test::AddMaterial(*scene, test::Glass({0.8, 0.9, 0.7}, 1.5, {0.1, 0.1, 0.1}));
+  test::AddObject(*scene, test::Box({-4, -4, -1.2}, {4, 4, -1}), 1);
+  test::AddObject(*scene, test::Box({-4, 3, -1}, {4, 3.2, 4}), 1);
+  for (int i = 0; i < 9; ++i) {
+    const Vec3d center = {-3.0 + 0.75 * i, random.Uniform(-2, 2), random.Uniform(-0.6, 1.5)};
+    test::AddObject(*scene, test::Sphere(center, random.Uniform(0.2, 0.35)), i % 3);
+  }
+  scene->lights.push_back(test::PointLight({2, -3, 6}));
+  Camera camera;
+  camera.eye = {0.5, -7, 2.5};
+  camera.look_at = {0, 1, 0};
+  camera.up = {0, 0, 1};
+  scene->cameras = {camera};
+  return scene;
+}
+
+TEST(AdoptTest, WhatIsKnownOfPathsIsKeptOrDroppedRightly) {
+  WorkerPool pool(2);
+  uint64_t kept = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    test::Random random(seed);
+    auto host = std::make_unique<SceneHost>(MirrorsAndBalls(random));
+    for (int edit = 0; edit < 5; ++edit) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << " edit " << edit);
+      Warm(*host, Lanes::kScalar, 0, pool);
+      Warm(*host, Lanes::kScalar, 0.25, pool);
+      auto next = std::make_shared<Scene>(host->scene());
+      const size_t ball = 2 + static_cast<size_t>(random.Below(9));
+      if (edit % 2 == 0) {
+        const Vec3d center = {random.Uniform(-3, 3), random.Uniform(-2, 2),
+                              random.Uniform(-0.6, 1)};
+        next->objects[ball] = test::ObjectOf(test::Sphere(center, 0.3), random.Below(3));
+      } else {
+        next->objects[ball].material = random.Below(3);
+      }
+      auto successor = std::make_unique<SceneHost>(next);
+      successor->Adopt(*host);
+      kept += successor->paths().CellCount();
+      EXPECT_EQ(successor->paths().ByteSize(), successor->paths().CountBytes());
+      host = std::move(successor);
+      ExpectClassical(*host, Lanes::kScalar, pool);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(kept, 1000u);
 }
 
 TEST(AdoptTest, TheFormerHostGoesOnAnswering) {
