@@ -27,6 +27,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   std::unique_ptr<Server> server(new Server(options, log));
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
   if (auto status = server->Listen(options); !status.ok()) return status;
+  server->SetReady(false);
+  auto status = server->backend_.WarmUp([server = server.get()] { server->SetReady(true); });
+  if (!status.ok()) return status;
   if (!IsLoopback(options.listen)) {
     log->warn("{} can be reached from other machines, and nothing asks who calls",
               server->address_);
@@ -53,15 +56,21 @@ absl::Status Server::Listen(const ServerOptions& options) {
     return absl::UnavailableError(absl::StrCat("--listen: cannot listen on ", options.listen));
   }
   address_ = WithPort(options.listen, port);
-  if (auto* health = grpc_->GetHealthCheckService()) {
-    health->SetServingStatus(v1::RadianceCache::service_full_name(), true);
-  }
   return absl::OkStatus();
+}
+
+void Server::SetReady(bool is_ready) {
+  is_ready_ = is_ready;
+  auto* health = grpc_->GetHealthCheckService();
+  if (health == nullptr) return;
+  health->SetServingStatus("", is_ready);
+  health->SetServingStatus(v1::RadianceCache::service_full_name(), is_ready);
 }
 
 void Server::Drain(std::chrono::milliseconds timeout_ms) {
   if (grpc_ == nullptr) return;
-  if (auto* health = grpc_->GetHealthCheckService()) health->SetServingStatus(false);
+  backend_.StopWarmUps();
+  SetReady(false);
   service_.Drain();
   grpc_->Shutdown(std::chrono::system_clock::now() + timeout_ms);
   grpc_.reset();

@@ -161,7 +161,9 @@ absl::StatusOr<Frame> GrpcClient::ReadFrame(FlyStream& stream, uint64_t sequence
   FrameAssembler assembler(request.width, request.height, all_layers);
   v1::FlyReply reply;
   while (!assembler.complete()) {
-    if (!stream.Read(&reply)) return absl::OutOfRangeError("the server ended the flight early");
+    if (!stream.Read(&reply) || reply.has_farewell()) {
+      return absl::OutOfRangeError("the server ended the flight early");
+    }
     if (reply.sequence() != sequence) {
       return absl::DataLossError(absl::StrCat("expected a chunk of frame ", sequence,
                                               ", got one of frame ", reply.sequence()));
@@ -185,6 +187,7 @@ absl::Status GrpcClient::Fly(const std::string& scene, const std::vector<FrameRe
     for (; writable && sent < std::min(requests.size(), index + kViewpointsAhead); ++sent) {
       v1::FlyRequest message;
       message.set_sequence(sent);
+      message.set_pacing(v1::PACING_EVERY);
       *message.mutable_frame() = FrameRequestToWire(scene, requests[sent], "", all_layers);
       writable = stream->Write(message);
     }
