@@ -40,6 +40,10 @@ uint64_t FramesRendered(test::RunningServer& running) {
   return running.server().backend().GetStats({})->scenes(0).frames();
 }
 
+uint64_t CacheBytes(test::RunningServer& running) {
+  return running.server().backend().GetStats({})->scenes(0).cache_bytes();
+}
+
 TEST(FlightsTest, TheNewestViewpointOvertakesThoseThatWait) {
   test::RunningServer running;
   grpc::ClientContext context;
@@ -108,9 +112,13 @@ TEST(FlightsTest, AFullFrameIsGivenUpForANewerViewpoint) {
   grpc::ClientContext context;
   const auto stream = running.stub().Fly(&context);
   v1::FlyRequest request = Viewpoint(0, test::EndlessFrame());
+  request.mutable_frame()->mutable_options()->set_mode(v1::CACHED);
   request.mutable_while_moving()->set_divisor(64);
   EXPECT_TRUE(stream->Write(request));
   EXPECT_TRUE(ReadFrame(*stream).at(0).reduced());
+  const uint64_t reduced_bytes = CacheBytes(running);
+  while (CacheBytes(running) == reduced_bytes && FramesRendered(running) < 2) {  // not begun
+  }
   EXPECT_TRUE(stream->Write(Viewpoint(1, test::SmallFrame())));
   EXPECT_EQ(ReadFrame(*stream).at(0).sequence(), 1u);
   stream->WritesDone();
