@@ -8,7 +8,8 @@
 namespace linetree {
 
 absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
-                                          std::shared_ptr<const Scene> scene, bool replace) {
+                                          std::shared_ptr<const Scene> scene, bool replace,
+                                          std::optional<double> weight) {
   if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
   // Dies after the lock is released: a big cache takes its time.
   NamedHost replaced;
@@ -16,7 +17,11 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   const auto found = hosts_.find(name);
   if (found != hosts_.end()) {
     const SceneVersion& version = found->second.host->scene().version;
-    if (version == scene->version) return found->second;
+    if (version == scene->version) {
+      found->second.weight = weight.value_or(found->second.weight);
+      ShareMemory();
+      return found->second;
+    }
     if (!replace) {
       return absl::AlreadyExistsError(absl::StrCat("name: ", Quoted(name),
                                                    " holds other content (scene version ", version,
@@ -25,18 +30,25 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   }
   if (auto status = CheckRoom(found, *scene); !status.ok()) return status;
   auto host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
-  if (found != hosts_.end()) replaced = std::move(found->second);
-  const NamedHost added{name, std::move(host), std::make_shared<AuditCounts>(),
-                        std::make_shared<AnswerCounts>()};
-  hosts_[name] = added;
+  if (found != hosts_.end()) {
+    replaced = std::move(found->second);
+    weight = weight.value_or(replaced.weight);
+  }
+  NamedHost& added = hosts_[name];
+  added = {name, std::move(host), std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(),
+           weight.value_or(1)};
   ShareMemory();
   if (on_change_) on_change_(name, true);
   return added;
 }
 
 void SceneStore::ShareMemory() {
-  for (const auto& [name, host] : hosts_) {
-    host.host->SetMemoryBytes(limits_.memory_bytes / hosts_.size());
+  double sum = 0;
+  for (const auto& [name, host] : hosts_) sum += host.weight;
+  for (auto& [name, host] : hosts_) {
+    const double part = host.weight / sum;
+    host.memory_bytes = static_cast<uint64_t>(part * static_cast<double>(limits_.memory_bytes));
+    host.host->SetMemoryBytes(host.memory_bytes);
   }
 }
 

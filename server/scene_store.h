@@ -1,7 +1,7 @@
 // The scenes of a server by name, each with its cache.
 //
 // A host that is in use outlives its unloading: whoever holds it finishes with it. The caches share
-// one budget in equal parts, which change when scenes come and go.
+// one budget by the scenes' weights; their parts change when scenes come and go.
 // Thread safety: all methods may be called from any thread.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,13 @@ namespace linetree {
 struct NamedHost {
   std::string name;
   std::shared_ptr<SceneHost> host;
-  std::shared_ptr<AuditCounts> audit;     // of this host's answers
-  std::shared_ptr<AnswerCounts> answers;  // of this host's answers, too
+  std::shared_ptr<AuditCounts> audit;       // of this host's answers
+  std::shared_ptr<AnswerCounts> answers{};  // of this host's answers, too
+  double weight = 1;                        // its caches' part of the budget, by the sum of all
+  uint64_t memory_bytes = 0;                // that is, when this was looked up
 };
+
+inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
 
 class SceneStore {
  public:
@@ -36,10 +41,11 @@ class SceneStore {
 
   explicit SceneStore(const Limits& limits) : limits_(limits) {}
 
-  // Keeps the scene under `name`. The same content again is a no-op that keeps the warm cache;
-  // other content is ALREADY_EXISTS unless `replace`. RESOURCE_EXHAUSTED when the store is full.
+  // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
+  // ALREADY_EXISTS unless `replace`. RESOURCE_EXHAUSTED when the store is full. Without a `weight`,
+  // which lies between the bounds above, the scene keeps that of the name, or gets 1.
   absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
-                                bool replace);
+                                bool replace, std::optional<double> weight = std::nullopt);
 
   // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
   absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
