@@ -1,14 +1,28 @@
 #include "server/backend.h"
 
+#include <atomic>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/library/status.h"
+#include "core/io/camera_path.h"
 #include "core/io/scene_edit.h"
 #include "core/io/wire.h"
+#include "core/io/wire_frame.h"
 #include "server/limit_list.h"
+#include "server/scene_root.h"
 
 namespace linetree {
+namespace {
+
+absl::StatusOr<std::unique_ptr<SceneSource>> ParseScene(const std::string& text,
+                                                        const std::string& name, bool is_nff,
+                                                        const SceneLimits& limits) {
+  return is_nff ? ParseNff(text, name, limits) : ParseSceneText(text, name, limits);
+}
+
+}  // namespace
 
 Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
     : options_(options),
@@ -23,14 +37,16 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
              [log = log_](const Violation& violation) {
                log->error("audit: an answer breaks its promise: {}", ToLine(violation));
              }),
-      renders_(options.render_slots, options.limits.max_waiting_renders),
-      loads_(1, options.limits.max_waiting_loads) {}
+      renders_(options.render_slots,
+               {options.limits.max_waiting_renders, options.limits.max_waiting_rays},
+               Busy("render slot")),
+      loads_(1, {.max_waiting = options.limits.max_waiting_loads}, Busy("loader")) {}
 
 absl::StatusOr<NamedHost> Backend::Keep(const std::string& name, const SceneSource& source,
-                                        bool replace) {
+                                        bool replace, std::optional<double> weight) {
   auto scene = BuildScene(source, options_.limits.scene);
   if (!scene.ok()) return scene.status();
-  return scenes_.Add(name, *std::move(scene), replace,
+  return scenes_.Add(name, *std::move(scene), replace, weight,
                      std::make_shared<const std::string>(source.message().SerializeAsString()));
 }
 
@@ -38,7 +54,11 @@ absl::Status Backend::LoadSceneFiles() {
   for (const SceneFile& file : options_.scenes) {
     auto source = ReadSceneFile(file.path, options_.limits.scene);
     if (!source.ok()) return source.status();
-    auto added = Keep(file.name, **source, /*replace=*/false);
+    double weight = 1;
+    for (const SceneWeight& of : options_.scene_weights) {
+      if (of.name == file.name) weight = of.weight;
+    }
+    auto added = Keep(file.name, **source, /*replace=*/false, weight);
     if (!added.ok()) return added.status();
     const Scene& scene = added->host->scene();
     log_->info("scene {} from {}: {} objects, version {}", file.name, file.path,
@@ -47,19 +67,84 @@ absl::Status Backend::LoadSceneFiles() {
   return absl::OkStatus();
 }
 
+absl::Status Backend::WarmUp(const std::function<void()>& ready) {
+  std::vector<std::pair<NamedHost, std::vector<FrameRequest>>> all;
+  for (const SceneFile& file : options_.warm_ups) {
+    const auto path = LoadCameraPath(file.path);
+    if (!path.ok()) return path.status();
+    const auto cameras = SampleCameraPath(*path, path->frames);
+    if (!cameras.ok()) return cameras.status();
+    std::vector<FrameRequest> frames;
+    for (const Camera& camera : *cameras) {
+      frames.push_back({.camera = camera, .options = options_.defaults});
+    }
+    all.emplace_back(*scenes_.Find(file.name, "--warm-up"), std::move(frames));
+  }
+  if (all.empty()) ready();
+  const auto left = std::make_shared<std::atomic<size_t>>(all.size());
+  for (auto& [scene, frames] : all) {
+    warm_ups_.Start(scene, std::move(frames), [left, ready, log = log_, name = scene.name] {
+      log->info("scene {} is warm", name);
+      if (--*left == 0) ready();
+    });
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<FrameRequest>> Backend::WarmUpFrames(const v1::WarmUp& warm_up) const {
+  auto path = CameraPathFromMessage(warm_up.path(), "warm_up.path");
+  if (!path.ok()) return path.status();
+  const uint64_t count = warm_up.frames() > 0 ? warm_up.frames() : uint64_t(path->frames);
+  if (count > options_.limits.max_warm_up_frames) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "warm_up.frames: expected at most ", options_.limits.max_warm_up_frames, ", got ", count));
+  }
+  auto options = RenderOptionsFromWire(warm_up.options(), options_.defaults, "warm_up.");
+  if (!options.ok()) return options.status();
+  FrameRequest frame;
+  frame.options = *options;
+  const auto side = [](uint32_t asked, int usual) { return asked > 0 ? asked : usual; };
+  const int64_t width = side(warm_up.width(), frame.width);
+  const int64_t height = side(warm_up.height(), frame.height);
+  const auto size = ValidateSize(width, height, options_.limits.render);
+  if (!size.ok()) return absl::Status(size.code(), absl::StrCat("warm_up.", size.message()));
+  frame.width = static_cast<int>(width);
+  frame.height = static_cast<int>(height);
+  const auto cameras = SampleCameraPath(*path, static_cast<int>(count));
+  if (!cameras.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("warm_up.path: ", cameras.status().message()));
+  }
+  std::vector<FrameRequest> frames;
+  for (const Camera& camera : *cameras) {
+    frames.push_back(frame);
+    frames.back().camera = camera;
+  }
+  return frames;
+}
+
 absl::StatusOr<std::unique_ptr<SceneSource>> Backend::SourceOf(v1::LoadSceneRequest request) const {
   const SceneLimits& limits = options_.limits.scene;
   switch (request.content_case()) {
     case v1::LoadSceneRequest::kScene:
       return SceneFromMessage(std::move(*request.mutable_scene()));
     case v1::LoadSceneRequest::kText:
-      return request.format() == v1::LoadSceneRequest::NFF
-                 ? ParseNff(request.text(), request.name(), limits)
-                 : ParseSceneText(request.text(), request.name(), limits);
+      return ParseScene(request.text(), request.name(),
+                        request.format() == v1::LoadSceneRequest::NFF, limits);
+    case v1::LoadSceneRequest::kFile: {
+      if (options_.scene_root.empty()) {
+        return absl::PermissionDeniedError(
+            "file: this server loads no files for clients; send the scene");
+      }
+      const auto text =
+          ReadFileBelow(options_.scene_root, request.file(), limits.max_file_bytes, "file");
+      if (!text.ok()) return text.status();
+      return ParseScene(*text, request.file(), absl::EndsWithIgnoreCase(request.file(), ".nff"),
+                        limits);
+    }
     case v1::LoadSceneRequest::CONTENT_NOT_SET:
       break;
   }
-  return absl::InvalidArgumentError("content: expected either scene or text");
+  return absl::InvalidArgumentError("content: expected one of scene, text and file");
 }
 
 absl::StatusOr<v1::SceneInfo> Backend::LoadScene(v1::LoadSceneRequest request) {
@@ -68,16 +153,37 @@ absl::StatusOr<v1::SceneInfo> Backend::LoadScene(v1::LoadSceneRequest request) {
     return absl::InvalidArgumentError(
         absl::StrCat("format: expected TEXTPROTO or NFF, got ", request.format()));
   }
+  std::optional<double> weight;
+  if (request.has_memory_weight()) weight = request.memory_weight();
+  if (weight && !(*weight >= kMinSceneWeight && *weight <= kMaxSceneWeight)) {
+    return absl::InvalidArgumentError(absl::StrCat("memory_weight: expected a number in [",
+                                                   kMinSceneWeight, ", ", kMaxSceneWeight,
+                                                   "], got ", *weight));
+  }
+  std::vector<FrameRequest> warm_up;
+  if (request.has_warm_up()) {
+    auto frames = WarmUpFrames(request.warm_up());
+    if (!frames.ok()) return frames.status();
+    warm_up = *std::move(frames);
+  }
   const std::string name = request.name();
   const bool replace = request.replace();
   auto source = SourceOf(std::move(request));
   if (!source.ok()) return source.status();
-  auto added = Keep(name, **source, replace);
+  auto added = Keep(name, **source, replace, weight);
   if (!added.ok()) return added.status();
-  SceneHost& host = *added->host;
-  log_->info("scene {} loaded: {} objects, version {}", name, host.scene().objects.size(),
-             host.scene().version);
-  return SceneInfoToWire(name, host.scene(), host.CacheBytes());
+  const Scene& loaded = added->host->scene();
+  log_->info("scene {} loaded: {} objects, version {}", name, loaded.objects.size(),
+             loaded.version);
+  if (!warm_up.empty()) warm_ups_.Start(*added, std::move(warm_up));
+  return InfoOf(*added);
+}
+
+v1::SceneInfo Backend::InfoOf(const NamedHost& scene) const {
+  v1::SceneInfo info = SceneInfoToWire(scene.name, scene.host->scene(), scene.host->CacheBytes());
+  info.set_memory_budget_bytes(scene.memory_bytes);
+  info.set_warm_up_frames_left(warm_ups_.FramesLeft(scene.name));
+  return info;
 }
 
 absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneRequest& request) {
@@ -94,11 +200,12 @@ absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneR
     return absl::InternalError("the scene's message cannot be read back");
   }
   if (auto status = ApplyEdits(request.edits(), message); !status.ok()) return status;
-  auto added = Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true);
+  auto added =
+      Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true, std::nullopt);
   if (!added.ok()) return added.status();
   SceneHost& host = *added->host;
   v1::UpdateSceneReply reply;
-  *reply.mutable_info() = SceneInfoToWire(added->name, host.scene(), host.CacheBytes());
+  *reply.mutable_info() = InfoOf(*added);
   if (&host != former->host.get()) {
     reply.set_cells_kept(added->adopted.kept);
     reply.set_cells_dropped(added->adopted.dropped);
@@ -112,10 +219,7 @@ absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneR
 
 v1::ListScenesReply Backend::ListScenes() const {
   v1::ListScenesReply reply;
-  for (const NamedHost& scene : scenes_.All()) {
-    *reply.add_scenes() =
-        SceneInfoToWire(scene.name, scene.host->scene(), scene.host->CacheBytes());
-  }
+  for (const NamedHost& scene : scenes_.All()) *reply.add_scenes() = InfoOf(scene);
   return reply;
 }
 
@@ -123,7 +227,7 @@ absl::StatusOr<v1::SceneInfo> Backend::DescribeScene(
     const v1::DescribeSceneRequest& request) const {
   auto scene = scenes_.Find(request.scene(), "scene");
   if (!scene.ok()) return scene.status();
-  return SceneInfoToWire(scene->name, scene->host->scene(), scene->host->CacheBytes());
+  return InfoOf(*scene);
 }
 
 absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneRequest& request) {
@@ -180,7 +284,9 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
   if (!batch.ok()) return batch.status();
   scene->answers->Add(*batch);
   audit_.Offer({scene->name, scene->host, scene->audit}, rays, *options, *batch);
-  return RayBatchToWire(*batch, scene->host->scene().version);
+  v1::TraceRaysReply reply = RayBatchToWire(*batch, scene->host->scene().version);
+  reply.set_max_relative_error(options->max_relative_error);
+  return reply;
 }
 
 absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFrameRequest& request,
@@ -190,11 +296,13 @@ absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFra
   auto frame = FrameRequestFromWire(request, scene->host->scene(), options_.defaults,
                                     options_.limits.render, path);
   if (!frame.ok()) return frame.status();
+  const auto format = FrameFormatFromWire(request, path);
+  if (!format.ok()) return format.status();
   const auto pixels = static_cast<uint64_t>(frame->width) * static_cast<uint64_t>(frame->height);
-  auto memory = frame_bytes_.Take(pixels * kFrameBytesPerPixel);
+  auto memory =
+      frame_bytes_.Take(pixels * (kFrameBytesPerPixel + FileBytesPerPixel(format->codec)));
   if (!memory) return Busy("memory for frames");
-  return PreparedFrame{*std::move(scene), *std::move(frame), request.all_layers(),
-                       *std::move(memory)};
+  return PreparedFrame{*std::move(scene), *std::move(frame), *format, *std::move(memory)};
 }
 
 absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelToken& cancel) {

@@ -7,18 +7,22 @@
 #include <spdlog/logger.h>
 
 #include <chrono>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/audit/live_audit.h"
+#include "core/io/frame_codec.h"
 #include "core/io/load_scene.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
+#include "server/job_queue.h"
 #include "server/metrics.h"
 #include "server/options.h"
 #include "server/scene_store.h"
-#include "server/work_queue.h"
+#include "server/warm_ups.h"
 
 namespace linetree {
 
@@ -26,10 +30,17 @@ class Backend {
  public:
   // `options` must be valid.
   Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log);
+  ~Backend() { StopWarmUps(); }
 
+  const ServerOptions& options() const { return options_; }
   const ServerLimits& limits() const { return options_.limits; }
   // Takes the scenes that options.scenes names.
   absl::Status LoadSceneFiles();
+  // Begins the warm-ups that options.warm_ups names, and calls `ready` at the end of the last one,
+  // or at once if there are none. Errors are those of the paths.
+  absl::Status WarmUp(const std::function<void()>& ready);
+  // Gives all warm-ups up; `ready` is not called any more.
+  void StopWarmUps() { warm_ups_.Stop(); }
 
   absl::StatusOr<v1::SceneInfo> LoadScene(v1::LoadSceneRequest request);
   v1::ListScenesReply ListScenes() const;
@@ -46,7 +57,7 @@ class Backend {
   struct PreparedFrame {
     NamedHost scene;
     FrameRequest request;
-    bool all_layers;
+    FrameFormat format;
     Budget::Share memory;
   };
   // `path` is a prefix of the paths in errors, "" or "frame.".
@@ -55,8 +66,8 @@ class Backend {
   absl::StatusOr<Frame> Render(const PreparedFrame& frame, const CancelToken& cancel);
 
   // Where renders and loads run; both are done when the Backend dies.
-  WorkQueue& renders() { return renders_; }
-  WorkQueue& loads() { return loads_; }
+  JobQueue& renders() { return renders_; }
+  JobQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
   SceneStore& scenes() { return scenes_; }
@@ -69,7 +80,10 @@ class Backend {
   // The scene of a request, not validated.
   absl::StatusOr<std::unique_ptr<SceneSource>> SourceOf(v1::LoadSceneRequest request) const;
   // Builds the scene and keeps it.
-  absl::StatusOr<NamedHost> Keep(const std::string& name, const SceneSource& source, bool replace);
+  absl::StatusOr<NamedHost> Keep(const std::string& name, const SceneSource& source, bool replace,
+                                 std::optional<double> weight);
+  absl::StatusOr<std::vector<FrameRequest>> WarmUpFrames(const v1::WarmUp& warm_up) const;
+  v1::SceneInfo InfoOf(const NamedHost& scene) const;
   static v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene);
 
   const ServerOptions options_;
@@ -81,8 +95,9 @@ class Backend {
   Budget flights_;
   LiveAudit audit_;
   // Last: their threads use all of the above.
-  WorkQueue renders_;
-  WorkQueue loads_;
+  WarmUps warm_ups_{renders_, pool_};
+  JobQueue renders_;
+  JobQueue loads_;
 };
 
 }  // namespace linetree

@@ -2,13 +2,10 @@
 
 #include <grpcpp/server_context.h>
 
-#include <algorithm>
 #include <chrono>
-#include <random>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/call_info.h"
 #include "server/log_format.h"
 
 namespace linetree {
@@ -16,8 +13,6 @@ namespace {
 
 using grpc::experimental::InterceptionHookPoints;
 using Clock = std::chrono::steady_clock;
-
-constexpr size_t kMaxRequestIdBytes = 128;
 
 class CallObserver final : public grpc::experimental::Interceptor {
  public:
@@ -46,9 +41,6 @@ class CallObserver final : public grpc::experimental::Interceptor {
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {
       Begin(methods->GetRecvInitialMetadata());
     }
-    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
-      methods->GetSendInitialMetadata()->emplace(kRequestIdKey, request_id_);
-    }
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
       status_ = methods->GetSendStatus();
     }
@@ -61,8 +53,8 @@ class CallObserver final : public grpc::experimental::Interceptor {
     peer_ = info_->server_context()->peer();
     const auto found = metadata->find(kRequestIdKey);
     if (found != metadata->end()) {
-      const std::string_view id(found->second.data(), found->second.size());
-      if (IsRequestId(id)) request_id_ = id;
+      const absl::string_view id(found->second.data(), found->second.size());
+      if (IsId(id)) request_id_ = std::string(id);
     }
     metadata->erase(kRequestIdKey);
     metadata->emplace(kRequestIdKey, request_id_);
@@ -87,32 +79,13 @@ class CallObserver final : public grpc::experimental::Interceptor {
   const std::shared_ptr<spdlog::logger> log_;
   const Clock::time_point began_ = Clock::now();
   const std::string method_ = info_->method();
-  std::string request_id_ = MakeRequestId();
+  std::string request_id_ = RandomId();
   std::string peer_;
   // Of a call whose client went before it had an end.
   grpc::Status status_ = grpc::Status::CANCELLED;
 };
 
 }  // namespace
-
-bool IsRequestId(std::string_view text) {
-  return !text.empty() && text.size() <= kMaxRequestIdBytes &&
-         std::all_of(text.begin(), text.end(), [](char c) {
-           return absl::ascii_isalnum(static_cast<unsigned char>(c)) ||
-                  std::string_view("_.:-").find(c) != std::string_view::npos;
-         });
-}
-
-std::string RequestIdOf(const grpc::ServerContextBase& context) {
-  const auto found = context.client_metadata().find(kRequestIdKey);
-  if (found == context.client_metadata().end()) return "";
-  return {found->second.data(), found->second.size()};
-}
-
-std::string MakeRequestId() {
-  thread_local std::mt19937_64 random{std::random_device{}()};
-  return absl::StrCat(absl::Hex(random(), absl::kZeroPad16));
-}
 
 grpc::experimental::Interceptor* CallObserverFactory::CreateServerInterceptor(
     grpc::experimental::ServerRpcInfo* info) {

@@ -12,16 +12,30 @@ std::shared_ptr<FlyCall> FlyCall::Start(Backend& backend, grpc::CallbackServerCo
   const std::lock_guard lock(call->mutex_);
   call->self_ = call;
   if (call->place_) {
-    call->ReadMore();
+    call->Begin();
   } else {
     call->End(backend.Busy("place for a flight"));
   }
   return call;
 }
 
+void FlyCall::Begin() {
+  ReadMore();
+  const std::chrono::seconds most = backend_.options().max_flight_s;
+  if (most.count() == 0) return;
+  too_old_.Set(std::chrono::system_clock::now() + most,
+               [most, flight = weak_from_this()](bool is_time) {
+                 const auto call = flight.lock();
+                 if (!is_time || !call) return;
+                 const std::lock_guard lock(call->mutex_);
+                 call->EndSoon(absl::UnavailableError(absl::StrCat(
+                     "the flight has lasted for ", most.count(),
+                     " s, which is the most; the last reply's token lets another go on with it")));
+               });
+}
+
 void FlyCall::ReadMore() {
-  if (reading_ || read_all_ || ended_) return;
-  if (pending_.size() >= backend_.limits().max_pending_viewpoints) return;
+  if (reading_ || read_all_ || ended_ || !plan_.WantsMore()) return;
   reading_ = true;
   StartRead(&received_);
 }
@@ -34,10 +48,12 @@ void FlyCall::OnReadDone(bool ok) {
     const auto status = Parse(received_, backend_.limits().max_request_bytes, &request);
     received_.Clear();
     if (status.ok()) {
-      pending_.emplace_back(std::move(request));
+      Take(std::move(request));
     } else {
-      pending_.emplace_back(status);
+      plan_.Add(status);
     }
+    // Who has moved on does not wait for the last view's finer picture.
+    if (step_.refines && cancel_ && plan_.HasNewer()) cancel_->Cancel();
     ReadMore();
   } else {
     read_all_ = true;
@@ -45,38 +61,67 @@ void FlyCall::OnReadDone(bool ok) {
   Advance();
 }
 
+void FlyCall::Take(v1::FlyRequest request) {
+  if (!std::exchange(has_begun_, true) && !request.resume_token().empty()) {
+    auto token = ParseResumeToken(request.resume_token(), "resume_token");
+    if (!token.ok()) return plan_.Add(token.status());
+    token_ = *std::move(token);
+  }
+  plan_.Add(std::move(request));
+}
+
 void FlyCall::Advance() {
   if (working_ || ended_) return;
-  if (cancel_.IsCancelled()) return End(absl::CancelledError("the client is gone"));
-  if (draining_) return End(absl::UnavailableError("the server is stopping"));
-  if (pending_.empty()) {
-    if (read_all_) End(absl::OkStatus());
-    return;
-  }
+  if (gone_) return End(absl::CancelledError("the client is gone"));
+  if (farewell_) return SayFarewell();
+  if (plan_.HasNext()) return SubmitNext();
+  if (read_all_) End(absl::OkStatus());
+}
+
+void FlyCall::SubmitNext() {
   working_ = true;
-  auto request = std::move(pending_.front());
-  pending_.pop_front();
-  ReadMore();
-  // At most one job per flight, and flights are counted: this queue cannot grow without bound.
-  backend_.renders().Submit(
-      [call = self_, request = std::move(request)] { call->Render(request); });
+  // At most one job per flight, and flights are counted: these jobs need no bound of their own.
+  const auto job =
+      backend_.renders().Submit({.session = absl::StrCat("flight ", token_.session),
+                                 .work_rays = plan_.WorkOfNext(),
+                                 .deadline = info_.deadline,
+                                 .has_place = true},
+                                [call = self_](const absl::Status& turn) { call->Run(turn); });
+  job_ = *job;
 }
 
-void FlyCall::Render(const absl::StatusOr<v1::FlyRequest>& request) {
-  auto frame = RenderFrame(request);
+void FlyCall::Run(const absl::Status& turn) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!turn.ok()) return End(turn);
+    auto step = plan_.Next();
+    if (!step.ok()) return End(step.status());
+    step_ = *std::move(step);
+    cancel_.emplace();
+    if (gone_) cancel_->Cancel();
+    ReadMore();
+  }
+  auto chunks = Render();
   const std::lock_guard lock(mutex_);
-  if (!frame.ok()) return End(frame.status());
-  chunks_.emplace(*std::move(frame), frame_->all_layers);
-  SendNext();
+  cancel_.reset();
+  if (chunks.ok()) {
+    ++token_.frames;
+    chunks_ = *std::move(chunks);
+    return SendNext();
+  }
+  frame_.reset();
+  if (!step_.refines || gone_ || !absl::IsCancelled(chunks.status())) return End(chunks.status());
+  working_ = false;
+  Advance();
 }
 
-absl::StatusOr<Frame> FlyCall::RenderFrame(const absl::StatusOr<v1::FlyRequest>& request) {
-  if (!request.ok()) return request.status();
-  sequence_ = request->sequence();
-  auto prepared = backend_.PrepareFrame(request->frame(), "frame.");
+absl::StatusOr<FrameChunks> FlyCall::Render() {
+  auto prepared = backend_.PrepareFrame(step_.viewpoint.frame(), "frame.");
   if (!prepared.ok()) return prepared.status();
   frame_.emplace(*std::move(prepared));
-  return backend_.Render(*frame_, cancel_);
+  auto frame = backend_.Render(*frame_, *cancel_);
+  if (!frame.ok()) return frame.status();
+  return FrameChunks::Make(*std::move(frame), frame_->format);
 }
 
 void FlyCall::SendNext() {
@@ -87,36 +132,64 @@ void FlyCall::SendNext() {
     working_ = false;
     return Advance();
   }
-  reply.set_sequence(sequence_);
+  reply.set_sequence(step_.viewpoint.sequence());
+  reply.set_reduced(step_.reduced);
+  reply.set_frame_number(token_.frames);
+  if (reply.chunk().has_end()) {
+    reply.set_skipped(step_.skipped);
+    reply.mutable_chunk()->mutable_end()->set_request_id(info_.request_id);
+  }
+  Send(reply);
+}
+
+void FlyCall::Send(const v1::FlyReply& reply) {
+  if (!std::exchange(has_sent_, true)) SendIdBack(info_, context_);
   sending_ = Serialize(reply);
   StartWrite(&sending_);
 }
 
+void FlyCall::SayFarewell() {
+  working_ = true;
+  v1::FlyReply reply;
+  reply.set_sequence(step_.viewpoint.sequence());
+  reply.set_frame_number(token_.frames);
+  reply.mutable_farewell()->set_resume_token(ToText(token_));
+  Send(reply);
+}
+
 void FlyCall::OnWriteDone(bool ok) {
   const std::lock_guard lock(mutex_);
-  if (ok) return SendNext();
-  End(absl::CancelledError("the client is gone"));
+  if (!ok) return End(absl::CancelledError("the client is gone"));
+  if (chunks_) return SendNext();
+  End(*farewell_);
 }
 
 void FlyCall::OnCancel() {
-  cancel_.Cancel();
   const std::lock_guard lock(mutex_);
+  gone_ = true;
+  if (cancel_) cancel_->Cancel();
+  backend_.renders().Withdraw(job_);
+  Advance();
+}
+
+void FlyCall::EndSoon(const absl::Status& why) {
+  if (!farewell_) farewell_ = why;
   Advance();
 }
 
 void FlyCall::Drain() {
   const std::lock_guard lock(mutex_);
-  draining_ = true;
-  Advance();
+  EndSoon(absl::UnavailableError("the server is stopping"));
 }
 
 void FlyCall::End(const absl::Status& status) {
   ended_ = true;
+  too_old_.Cancel();
   // Before the client hears of the end and asks for them again.
   chunks_.reset();
   frame_.reset();
   place_.reset();
-  Finish(Finished(status, context_));
+  Finish(Finished(status, info_, context_));
 }
 
 void FlyCall::OnDone() { const auto last = std::move(self_); }

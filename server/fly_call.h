@@ -1,10 +1,10 @@
-// Fly: viewpoints in, frames out, in order. One render and one write are under way at a time; a
-// client that sends far ahead is no longer read, which gRPC's flow control tells it.
+// Fly: viewpoints in, frames out, in order. One render and one write are under way at a time, so
+// nothing is rendered ahead for a reader that is slow.
 #pragma once
 
+#include <grpcpp/alarm.h>
 #include <grpcpp/support/server_callback.h>
 
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,15 +12,19 @@
 
 #include "core/io/wire_frame.h"
 #include "server/backend.h"
+#include "server/call_info.h"
+#include "server/flight_plan.h"
+#include "server/resume_token.h"
 
 namespace linetree {
 
-class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
+class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
+                      public std::enable_shared_from_this<FlyCall> {
  public:
   // Starts the call; it owns itself until gRPC is done with it.
   static std::shared_ptr<FlyCall> Start(Backend& backend, grpc::CallbackServerContext* context);
 
-  // Ends with UNAVAILABLE after the frame that is under way.
+  // Says farewell and ends with UNAVAILABLE, after the frame that is under way.
   void Drain();
 
   void OnReadDone(bool ok) override;
@@ -31,37 +35,56 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
  private:
   FlyCall(Backend& backend, grpc::CallbackServerContext* context,
           std::optional<Budget::Share> place)
-      : backend_(backend), context_(context), place_(std::move(place)) {}
+      : backend_(backend),
+        context_(context),
+        info_(ReadCallInfo(context)),
+        token_{RandomId()},
+        plan_(backend.limits().max_pending_viewpoints),
+        place_(std::move(place)) {}
 
   // These need mutex_. gRPC never calls back from within a Start... or Finish.
+  void Begin();
   void ReadMore();
+  void Take(v1::FlyRequest request);
   void Advance();
+  void SubmitNext();
   void SendNext();
+  void SayFarewell();
+  void Send(const v1::FlyReply& reply);
   void End(const absl::Status& status);
+  // After the frame that is under way; only the first one counts.
+  void EndSoon(const absl::Status& why);
 
   // On the render queue.
-  void Render(const absl::StatusOr<v1::FlyRequest>& request);
-  absl::StatusOr<Frame> RenderFrame(const absl::StatusOr<v1::FlyRequest>& request);
+  void Run(const absl::Status& turn);
+  absl::StatusOr<FrameChunks> Render();
 
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
-  CancelToken cancel_;
+  const CallInfo info_;
 
   std::mutex mutex_;
-  // Guarded by mutex_. What cannot be understood waits for its turn to be refused like the rest.
-  std::deque<absl::StatusOr<v1::FlyRequest>> pending_;
+  // Guarded by mutex_, but for what belongs to the frame that is being rendered.
+  ResumeToken token_;
+  bool has_begun_ = false;  // its first viewpoint has come
+  FlightPlan plan_;
   std::optional<Budget::Share> place_;  // none: the call was refused, or has ended
   bool reading_ = false;
   bool read_all_ = false;
-  bool working_ = false;  // a frame is being rendered or sent
-  bool draining_ = false;
+  bool working_ = false;  // a frame waits, or is being rendered or sent; or the farewell is sent
+  bool has_sent_ = false;
+  bool gone_ = false;                     // the client
+  std::optional<absl::Status> farewell_;  // why the server ends the flight
   bool ended_ = false;
+  JobId job_ = 0;  // that waits
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sending_;
+  grpc::Alarm too_old_;
   std::shared_ptr<FlyCall> self_;  // until OnDone; the queue's job holds another
 
   // Of the frame that is being worked on.
-  uint64_t sequence_ = 0;
+  FlightPlan::Step step_;
+  std::optional<CancelToken> cancel_;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
 };

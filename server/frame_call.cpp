@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/flight_plan.h"
 #include "server/messages.h"
 
 namespace linetree {
@@ -11,57 +12,65 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameCall::Start(Backend& backend,
                                                              const grpc::ByteBuffer& request) {
   const std::shared_ptr<FrameCall> call(new FrameCall(backend, context));
   call->self_ = call;
-  absl::Status status = call->Prepare(request);
-  if (status.ok() && !backend.renders().TrySubmit([call] { call->Render(); })) {
-    status = backend.Busy("render slot");
-  }
-  if (!status.ok()) call->Finish(Finished(status, context));
+  const absl::Status status = call->Submit(request);
+  if (!status.ok()) call->Finish(Finished(status, call->info_, context));
   return call.get();
 }
 
-absl::Status FrameCall::Prepare(const grpc::ByteBuffer& request) {
+absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
   v1::RenderFrameRequest message;
   auto status = Parse(request, backend_.limits().max_request_bytes, &message);
   if (!status.ok()) return status;
   auto frame = backend_.PrepareFrame(message, "");
   if (!frame.ok()) return frame.status();
   frame_ = *std::move(frame);
-  return absl::OkStatus();
+  const auto job = backend_.renders().Submit(
+      {.session = info_.session, .work_rays = EstimatedRays(message), .deadline = info_.deadline},
+      [call = self_](const absl::Status& turn) { call->Run(turn); });
+  if (job.ok()) job_ = *job;
+  return job.status();
 }
 
-void FrameCall::Render() {
-  auto frame = backend_.Render(*frame_, cancel_);
-  if (!frame.ok()) {
-    End(Finished(frame.status(), context_));
-    return;
-  }
-  chunks_.emplace(*std::move(frame), frame_->all_layers);
+void FrameCall::Run(const absl::Status& turn) {
+  const absl::Status status = turn.ok() ? Render() : turn;
+  if (!status.ok()) return End(status);
+  SendIdBack(info_, context_);
   SendNext();
+}
+
+absl::Status FrameCall::Render() {
+  auto frame = backend_.Render(*frame_, cancel_);
+  if (!frame.ok()) return frame.status();
+  auto chunks = FrameChunks::Make(*std::move(frame), frame_->format);
+  if (chunks.ok()) chunks_ = *std::move(chunks);
+  return chunks.status();
+}
+
+void FrameCall::OnCancel() {
+  cancel_.Cancel();
+  backend_.renders().Withdraw(job_);
 }
 
 void FrameCall::SendNext() {
   v1::FrameChunk chunk;
   if (!chunks_->Next(&chunk)) {
-    End(grpc::Status::OK);
-    return;
+    return End(absl::OkStatus());
   }
+  if (chunk.has_end()) chunk.mutable_end()->set_request_id(info_.request_id);
   sending_ = Serialize(chunk);
   StartWrite(&sending_);
 }
 
 void FrameCall::OnWriteDone(bool ok) {
-  if (ok) {
-    SendNext();
-  } else {
-    End(grpc::Status::CANCELLED);
-  }
+  if (ok) return SendNext();
+  End(absl::CancelledError("the client is gone"));
 }
 
-void FrameCall::End(const grpc::Status& status) {
+void FrameCall::End(const absl::Status& status) {
   // First, so that a client that has seen the end finds the memory free.
   chunks_.reset();
   frame_.reset();
-  Finish(status);
+  Finish(Finished(status, info_, context_));
 }
 
 void FrameCall::OnDone() { const auto last = std::move(self_); }

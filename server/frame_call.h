@@ -9,6 +9,7 @@
 
 #include "core/io/wire_frame.h"
 #include "server/backend.h"
+#include "server/call_info.h"
 
 namespace linetree {
 
@@ -20,22 +21,25 @@ class FrameCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
                                                            const grpc::ByteBuffer& request);
 
   void OnWriteDone(bool ok) override;
-  void OnCancel() override { cancel_.Cancel(); }
+  void OnCancel() override;
   void OnDone() override;
 
  private:
   // What happens to a call happens one after the other, so nothing but the token needs a lock: the
   // request is checked, then the job renders, then each write is started by the end of the one
-  // before, and whoever finds an end calls Finish.
+  // before, and whoever finds an end calls Finish. gRPC cancels no call before Start has returned.
   FrameCall(Backend& backend, grpc::CallbackServerContext* context)
-      : backend_(backend), context_(context) {}
-  absl::Status Prepare(const grpc::ByteBuffer& request);
-  void Render();
+      : backend_(backend), context_(context), info_(ReadCallInfo(context)) {}
+  absl::Status Submit(const grpc::ByteBuffer& request);
+  void Run(const absl::Status& turn);
+  absl::Status Render();
   void SendNext();
-  void End(const grpc::Status& status);
+  void End(const absl::Status& status);
 
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
+  const CallInfo info_;
+  JobId job_ = 0;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
   grpc::ByteBuffer sending_;

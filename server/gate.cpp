@@ -2,6 +2,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/call_info.h"
 #include "server/messages.h"
 
 namespace linetree {
@@ -57,7 +58,7 @@ Reactor* Gate::Pass(Context* context, Role needed, absl::string_view what, const
     status = CheckCaller(*tokens_, Authorization(context->client_metadata()), needed, what);
   }
   if (status.ok()) return call();
-  return new Refused<Reactor>(Finished(status, context));
+  return new Refused<Reactor>(Finished(status, ReadCallInfo(context), context));
 }
 
 grpc::ServerUnaryReactor* Gate::LoadScene(Context* context, const Bytes* request, Bytes* reply) {

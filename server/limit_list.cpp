@@ -32,8 +32,9 @@ std::vector<NamedLimit> ListScene(const SceneLimits& limits) {
 std::vector<NamedLimit> ListLimits(const ServerLimits& limits) {
   const auto& [render, max_message_bytes, max_scene_bytes, max_scene_messages, max_batch_bytes,
                max_request_bytes, scene, max_scenes, max_objects_in_all_scenes, max_waiting_renders,
-               max_waiting_loads, max_flights, max_pending_viewpoints, max_streams_per_connection,
-               max_frame_bytes, max_waiting_audits, retry_after_ms] = limits;
+               max_waiting_rays, max_waiting_loads, max_flights, max_pending_viewpoints,
+               max_streams_per_connection, max_frame_bytes, max_warm_up_frames, max_waiting_audits,
+               retry_after_ms] = limits;
   std::vector<NamedLimit> list = ListRender(render);
   for (const NamedLimit& limit : ListScene(scene)) list.push_back(limit);
   const NamedLimit others[] = {
@@ -45,6 +46,7 @@ std::vector<NamedLimit> ListLimits(const ServerLimits& limits) {
       {"max_scenes", max_scenes, "scenes that are held"},
       {"max_objects_in_all_scenes", max_objects_in_all_scenes, "objects of all scenes together"},
       {"max_waiting_renders", max_waiting_renders, "frames and batches that wait to be worked on"},
+      {"max_waiting_rays", max_waiting_rays, "rays of these together"},
       {"max_waiting_loads", max_waiting_loads, "scenes that wait to be built"},
       {"max_flights", max_flights, "flights at a time"},
       {"max_pending_viewpoints", max_pending_viewpoints,
@@ -52,6 +54,7 @@ std::vector<NamedLimit> ListLimits(const ServerLimits& limits) {
       {"max_streams_per_connection", static_cast<uint64_t>(max_streams_per_connection),
        "calls at a time on one connection"},
       {"max_frame_bytes", max_frame_bytes, "bytes of all frames in work or being sent"},
+      {"max_warm_up_frames", max_warm_up_frames, "frames of a warm-up"},
       {"max_waiting_audits", max_waiting_audits, "answers that wait for the audit"},
       {"retry_after_ms", static_cast<uint64_t>(retry_after_ms.count()),
        "milliseconds after which a caller that was refused for want of room should come back"},

@@ -34,8 +34,11 @@ struct ServerLimits {
   size_t max_scenes = 256;
   uint64_t max_objects_in_all_scenes = 16'000'000;
 
-  // Frames and batches that wait for a render slot, and scenes that wait to be built.
+  // Frames and batches that wait for a render slot, and their rays together: several times what one
+  // may have. Flights are not among them.
   size_t max_waiting_renders = 64;
+  uint64_t max_waiting_rays = uint64_t{1} << 31;
+  // Scenes that wait to be built.
   size_t max_waiting_loads = 8;
   // Flights at a time, and what each may send ahead before the server stops reading.
   uint64_t max_flights = 256;
@@ -43,6 +46,9 @@ struct ServerLimits {
   int max_streams_per_connection = 256;
   // Frames that are being rendered or sent, together.
   uint64_t max_frame_bytes = uint64_t{4} << 30;
+
+  // Of one warm-up.
+  uint32_t max_warm_up_frames = 1000;
 
   // Answers that wait to be traced again by the audit.
   size_t max_waiting_audits = 4096;

@@ -17,15 +17,32 @@ namespace {
 
 struct Flags {
   std::vector<std::string> scenes;
+  std::vector<std::string> scene_weights;
+  std::vector<std::string> warm_ups;
   std::string log_level = "info";
   std::string log_format = "text";
   std::string judge = "certified";
   std::string lanes = "scalar";
   int64_t drain_timeout_ms = 0;
+  int64_t max_flight_s = 0;
 };
 
-void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
+void AddSceneFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
   app.add_option("--scene", flags.scenes, "NAME=FILE: a scene to load; may be repeated");
+  app.add_option("--scene-weight", flags.scene_weights,
+                 "NAME=WEIGHT: the scene's part of --memory is its weight by the sum of all; "
+                 "without, 1");
+  app.add_option(
+      "--warm-up", flags.warm_ups,
+      "NAME=FILE: a camera path whose frames are rendered in the scene before the server "
+      "calls itself ready");
+  app.add_option("--scene-root", options.scene_root,
+                 "folder from which clients may load scenes; without, they send them")
+      ->type_name("FOLDER");
+}
+
+void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
+  AddSceneFlags(app, options, flags);
   app.add_option("--listen", options.listen,
                  "HOST:PORT; port 0 takes a free one. What other machines can reach needs "
                  "--tls-cert, --tls-key and --token-file, or --insecure")
@@ -51,6 +68,10 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
   flags.drain_timeout_ms = options.drain_timeout_ms.count();
   app.add_option("--drain-timeout-ms", flags.drain_timeout_ms,
                  "how long open calls may go on after the signal to stop")
+      ->capture_default_str();
+  app.add_option("--max-flight-s", flags.max_flight_s,
+                 "how long a flight may last before the client has to go on in a new stream, with "
+                 "the token that the last reply brings; 0: for ever")
       ->capture_default_str();
 }
 
@@ -116,8 +137,19 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
     if (!scene.ok()) return scene.status();
     options.scenes.push_back(*std::move(scene));
   }
+  for (const std::string& flag : flags.scene_weights) {
+    auto weight = ParseWeightFlag(flag);
+    if (!weight.ok()) return weight.status();
+    options.scene_weights.push_back(*std::move(weight));
+  }
+  for (const std::string& flag : flags.warm_ups) {
+    auto warm_up = ParseSceneFlag(flag, "--warm-up");
+    if (!warm_up.ok()) return warm_up.status();
+    options.warm_ups.push_back(*std::move(warm_up));
+  }
   options.defaults.judge = flags.judge == "certified" ? JudgeKind::kCertified : JudgeKind::kPaper;
   options.defaults.lanes = flags.lanes == "simd" ? Lanes::kSimd : Lanes::kScalar;
+  options.max_flight_s = std::chrono::seconds(flags.max_flight_s);
   options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
   return ValidateServerOptions(options);
 }

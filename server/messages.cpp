@@ -95,7 +95,9 @@ grpc::ByteBuffer Serialize(const pb::Message& message) {
   return bytes;
 }
 
-grpc::Status Finished(const absl::Status& status, grpc::CallbackServerContext* context) {
+grpc::Status Finished(const absl::Status& status, const CallInfo& info,
+                      grpc::CallbackServerContext* context) {
+  if (!status.ok()) context->AddTrailingMetadata(kRequestIdKey, info.request_id);
   if (absl::IsResourceExhausted(status)) {
     const auto delay_ms = RetryAfter(status);
     context->AddTrailingMetadata(kRetryPushbackKey,

@@ -8,6 +8,7 @@
 #include <grpcpp/support/status.h>
 
 #include "absl/status/status.h"
+#include "server/call_info.h"
 #include "server/limits.h"
 
 namespace linetree {
@@ -29,7 +30,9 @@ uint64_t CountMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Me
 
 grpc::ByteBuffer Serialize(const google::protobuf::Message& message);
 
-// The status for Finish. A refusal also tells the caller's gRPC when to try again, or not to.
-grpc::Status Finished(const absl::Status& status, grpc::CallbackServerContext* context);
+// The status for Finish. What is refused also tells the caller's gRPC when to try again, or not to.
+// The request id goes back in the trailing metadata of an error.
+grpc::Status Finished(const absl::Status& status, const CallInfo& info,
+                      grpc::CallbackServerContext* context);
 
 }  // namespace linetree

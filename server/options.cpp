@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 
+#include <filesystem>
 #include <set>
 
 #include "absl/strings/match.h"
@@ -9,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "core/io/wire.h"
+#include "server/scene_store.h"
 
 namespace linetree {
 namespace {
@@ -18,6 +20,7 @@ constexpr int kMaxRenderSlots = 64;
 // Less than this cannot hold the cells of a single view.
 constexpr uint64_t kMinMemoryBytes = uint64_t{1} << 20;
 constexpr std::chrono::hours kMaxDrain{1};
+constexpr std::chrono::hours kMaxFlight{24 * 365};
 
 absl::Status Expected(absl::string_view flag, absl::string_view expected, absl::string_view got) {
   return absl::InvalidArgumentError(absl::StrCat(flag, ": expected ", expected, ", got ", got));
@@ -29,14 +32,33 @@ absl::Status CheckRange(absl::string_view flag, int64_t value, int64_t lowest, i
                   absl::StrCat(value));
 }
 
-absl::Status CheckScenes(const std::vector<SceneFile>& scenes) {
+absl::Status CheckScenes(const ServerOptions& options) {
   std::set<std::string> names;
-  for (const SceneFile& scene : scenes) {
+  for (const SceneFile& scene : options.scenes) {
     if (auto status = ValidateSceneName(scene.name, "--scene"); !status.ok()) return status;
     if (scene.path.empty()) return Expected("--scene", "NAME=FILE", scene.name + "=");
     if (!names.insert(scene.name).second) {
       return Expected("--scene", "different names", Quoted(scene.name) + " twice");
     }
+  }
+  const auto check_name = [&](absl::string_view flag, const std::string& name) {
+    if (names.count(name) > 0) return absl::OkStatus();
+    return Expected(flag, "the name of one of --scene", Quoted(name));
+  };
+  for (const auto& [name, weight] : options.scene_weights) {
+    if (auto status = check_name("--scene-weight", name); !status.ok()) return status;
+    if (!(weight >= kMinSceneWeight && weight <= kMaxSceneWeight)) {
+      return Expected("--scene-weight",
+                      absl::StrCat("a number in [", kMinSceneWeight, ", ", kMaxSceneWeight, "]"),
+                      absl::StrCat(weight));
+    }
+  }
+  for (const SceneFile& warm_up : options.warm_ups) {
+    if (auto status = check_name("--warm-up", warm_up.name); !status.ok()) return status;
+  }
+  std::error_code error;
+  if (!options.scene_root.empty() && !std::filesystem::is_directory(options.scene_root, error)) {
+    return Expected("--scene-root", "a folder", Quoted(options.scene_root));
   }
   return absl::OkStatus();
 }
@@ -84,14 +106,23 @@ absl::Status CheckSecurity(const ServerOptions& options) {
 
 }  // namespace
 
-absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag) {
-  const size_t equals = flag.find('=');
-  if (equals == std::string::npos) return Expected("--scene", "NAME=FILE", Quoted(flag));
-  return SceneFile{flag.substr(0, equals), flag.substr(equals + 1)};
+absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& value, absl::string_view flag) {
+  const size_t equals = value.find('=');
+  if (equals == std::string::npos) return Expected(flag, "NAME=FILE", Quoted(value));
+  return SceneFile{value.substr(0, equals), value.substr(equals + 1)};
+}
+
+absl::StatusOr<SceneWeight> ParseWeightFlag(const std::string& value) {
+  const size_t equals = value.find('=');
+  SceneWeight weight{value.substr(0, equals)};
+  if (equals == std::string::npos || !absl::SimpleAtod(value.substr(equals + 1), &weight.weight)) {
+    return Expected("--scene-weight", "NAME=WEIGHT", Quoted(value));
+  }
+  return weight;
 }
 
 absl::Status ValidateServerOptions(const ServerOptions& options) {
-  if (auto status = CheckScenes(options.scenes); !status.ok()) return status;
+  if (auto status = CheckScenes(options); !status.ok()) return status;
   auto status = CheckSecurity(options);
   if (!status.ok()) return status;
   status = CheckRange("--threads", options.threads, 0, kMaxThreads);
@@ -100,6 +131,9 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
   if (!status.ok()) return status;
   status = CheckRange("--drain-timeout-ms", options.drain_timeout_ms.count(), 0,
                       std::chrono::milliseconds(kMaxDrain).count());
+  if (!status.ok()) return status;
+  status = CheckRange("--max-flight-s", options.max_flight_s.count(), 0,
+                      std::chrono::seconds(kMaxFlight).count());
   if (!status.ok()) return status;
   if (options.memory_bytes < kMinMemoryBytes) {
     return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),

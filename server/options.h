@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "core/render/options.h"
 #include "server/limits.h"
 #include "server/tls.h"
@@ -18,8 +19,19 @@ struct SceneFile {
   std::string path;
 };
 
+struct SceneWeight {
+  std::string name;
+  double weight = 1;
+};
+
 struct ServerOptions {
   std::vector<SceneFile> scenes;
+  // Of some of them: weights for their parts of the memory, and camera paths along which frames are
+  // rendered before the server calls itself ready.
+  std::vector<SceneWeight> scene_weights;
+  std::vector<SceneFile> warm_ups;
+  // The folder that clients may load scenes from; empty: none.
+  std::string scene_root;
   // host:port; port 0 takes a free one. What other machines can reach needs TLS and tokens, or
   // `insecure`.
   std::string listen = "127.0.0.1:50051";
@@ -40,6 +52,8 @@ struct ServerOptions {
   // Share of the answers from caches that are traced again, to count those that break their
   // promise.
   double audit_share = 0;
+  // How long a flight may last before it has to be resumed in a new stream; 0: for ever.
+  std::chrono::seconds max_flight_s{0};
   // How long open calls may go on after the signal to stop.
   std::chrono::milliseconds drain_timeout_ms{10'000};
   ServerLimits limits;
@@ -48,8 +62,11 @@ struct ServerOptions {
 // OK, or INVALID_ARGUMENT naming the flag and what was expected.
 absl::Status ValidateServerOptions(const ServerOptions& options);
 
-// "NAME=FILE", or INVALID_ARGUMENT.
-absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& flag);
+// "NAME=FILE", or INVALID_ARGUMENT. `flag` is the name of the flag, such as "--scene".
+absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& value,
+                                         absl::string_view flag = "--scene");
+// "NAME=WEIGHT" of --scene-weight, or INVALID_ARGUMENT.
+absl::StatusOr<SceneWeight> ParseWeightFlag(const std::string& value);
 
 struct HostPort {
   std::string host;

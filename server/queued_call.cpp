@@ -6,23 +6,34 @@
 
 namespace linetree {
 
-grpc::ServerUnaryReactor* QueuedCall::Start(WorkQueue& queue, grpc::CallbackServerContext* context,
-                                            grpc::ByteBuffer* reply, Work work,
-                                            const absl::Status& busy) {
-  const std::shared_ptr<QueuedCall> call(new QueuedCall(context, reply, std::move(work)));
+grpc::ServerUnaryReactor* QueuedCall::Start(JobQueue& queue, const JobInfo& job, CallInfo info,
+                                            grpc::CallbackServerContext* context,
+                                            grpc::ByteBuffer* reply, Work work) {
+  const std::shared_ptr<QueuedCall> call(
+      new QueuedCall(queue, std::move(info), context, reply, std::move(work)));
   call->self_ = call;
-  if (!queue.TrySubmit([call] { call->Run(); })) call->Finish(Finished(busy, context));
+  const auto id = queue.Submit(job, [call](const absl::Status& turn) { call->Run(turn); });
+  if (id.ok()) {
+    call->job_ = *id;
+  } else {
+    call->Finish(Finished(id.status(), call->info_, context));
+  }
   return call.get();
 }
 
-void QueuedCall::Run() {
-  if (cancel_.IsCancelled()) {
-    Finish(grpc::Status::CANCELLED);
-    return;
-  }
+void QueuedCall::Run(const absl::Status& turn) {
+  if (!turn.ok()) return Finish(Finished(turn, info_, context_));
   auto result = work_(cancel_);
-  if (result.ok()) *reply_ = *std::move(result);
-  Finish(Finished(result.status(), context_));
+  if (result.ok()) {
+    *reply_ = *std::move(result);
+    SendIdBack(info_, context_);
+  }
+  Finish(Finished(result.status(), info_, context_));
+}
+
+void QueuedCall::OnCancel() {
+  cancel_.Cancel();
+  queue_.Withdraw(job_);
 }
 
 void QueuedCall::OnDone() { const auto last = std::move(self_); }

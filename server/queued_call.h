@@ -5,10 +5,12 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "core/render/scene_host.h"
-#include "server/work_queue.h"
+#include "server/call_info.h"
+#include "server/job_queue.h"
 
 namespace linetree {
 
@@ -16,23 +18,31 @@ class QueuedCall final : public grpc::ServerUnaryReactor {
  public:
   using Work = std::function<absl::StatusOr<grpc::ByteBuffer>(const CancelToken& cancel)>;
 
-  // Starts the call; it owns itself until gRPC is done with it. `busy` is its answer when the queue
-  // is full. `reply` belongs to gRPC and lives as long as the call.
-  static grpc::ServerUnaryReactor* Start(WorkQueue& queue, grpc::CallbackServerContext* context,
-                                         grpc::ByteBuffer* reply, Work work,
-                                         const absl::Status& busy);
+  // Starts the call; it owns itself until gRPC is done with it. `job` says how the work is queued.
+  // `reply` belongs to gRPC and lives as long as the call.
+  static grpc::ServerUnaryReactor* Start(JobQueue& queue, const JobInfo& job, CallInfo info,
+                                         grpc::CallbackServerContext* context,
+                                         grpc::ByteBuffer* reply, Work work);
 
-  void OnCancel() override { cancel_.Cancel(); }
+  void OnCancel() override;
   void OnDone() override;
 
  private:
-  QueuedCall(grpc::CallbackServerContext* context, grpc::ByteBuffer* reply, Work work)
-      : context_(context), reply_(reply), work_(std::move(work)) {}
-  void Run();
+  QueuedCall(JobQueue& queue, CallInfo info, grpc::CallbackServerContext* context,
+             grpc::ByteBuffer* reply, Work work)
+      : queue_(queue),
+        info_(std::move(info)),
+        context_(context),
+        reply_(reply),
+        work_(std::move(work)) {}
+  void Run(const absl::Status& turn);
 
+  JobQueue& queue_;
+  const CallInfo info_;
   grpc::CallbackServerContext* const context_;
   grpc::ByteBuffer* const reply_;
   const Work work_;
+  JobId job_ = 0;
   CancelToken cancel_;
   std::shared_ptr<QueuedCall> self_;  // until OnDone; the queue's job holds another
 };

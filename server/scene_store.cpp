@@ -12,11 +12,9 @@ absl::StatusOr<NamedHost> SceneStore::CheckAdd(const std::string& name, const Sc
                                                bool replace) const {
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
-  NamedHost former;
   if (found != hosts_.end()) {
-    former = found->second;
-    const SceneVersion& version = former.host->scene().version;
-    if (version == scene.version) return former;
+    const SceneVersion& version = found->second.host->scene().version;
+    if (version == scene.version) return found->second;
     if (!replace) {
       return absl::AlreadyExistsError(absl::StrCat("name: ", Quoted(name),
                                                    " holds other content (scene version ", version,
@@ -24,42 +22,54 @@ absl::StatusOr<NamedHost> SceneStore::CheckAdd(const std::string& name, const Sc
     }
   }
   if (auto status = CheckRoom(found, scene); !status.ok()) return status;
-  return former;
+  return found == hosts_.end() ? NamedHost() : found->second;
 }
 
 absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
                                           std::shared_ptr<const Scene> scene, bool replace,
+                                          std::optional<double> weight,
                                           std::shared_ptr<const std::string> content) {
   if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
   // Dies after the lock is released: a big cache takes its time.
   auto former = CheckAdd(name, *scene, replace);
   if (!former.ok()) return former;
-  if (former->host && former->host->scene().version == scene->version) return former;
-  NamedHost added{
-      name, std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
-      std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(), std::move(content)};
-  if (former->host) {
-    // Outside the lock: it waits for those who read.
-    const auto begin = std::chrono::steady_clock::now();
-    added.adopted = added.host->Adopt(*former->host);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-    added.adopt_ms = took.count();
+  NamedHost added = *former;
+  added.weight = weight.value_or(former->weight);
+  const bool is_other = !former->host || former->host->scene().version != scene->version;
+  if (is_other) {
+    added.name = name;
+    added.host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
+    added.audit = std::make_shared<AuditCounts>();
+    added.answers = std::make_shared<AnswerCounts>();
+    added.content = std::move(content);
+    Adopt(*former, added);
   }
   const std::lock_guard lock(mutex_);
-  hosts_[name] = added;
+  NamedHost& kept = hosts_[name];
+  kept = std::move(added);
   ShareMemory();
-  if (on_change_) on_change_(name, true);
-  return added;
+  if (is_other && on_change_) on_change_(name, true);
+  return kept;
 }
 
-uint64_t SceneStore::ShareOf(const NamedHost& former) const {
-  const std::lock_guard lock(mutex_);
-  return limits_.memory_bytes / (hosts_.size() + (former.host ? 0 : 1));
+// Without the lock: it waits for those who read.
+void SceneStore::Adopt(const NamedHost& former, NamedHost& added) {
+  added.adopted = {};
+  added.adopt_ms = 0;
+  if (!former.host) return;
+  const auto begin = std::chrono::steady_clock::now();
+  added.adopted = added.host->Adopt(*former.host);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+  added.adopt_ms = took.count();
 }
 
 void SceneStore::ShareMemory() {
-  for (const auto& [name, host] : hosts_) {
-    host.host->SetMemoryBytes(limits_.memory_bytes / hosts_.size());
+  double sum = 0;
+  for (const auto& [name, host] : hosts_) sum += host.weight;
+  for (auto& [name, host] : hosts_) {
+    const double part = host.weight / sum;
+    host.memory_bytes = static_cast<uint64_t>(part * static_cast<double>(limits_.memory_bytes));
+    host.host->SetMemoryBytes(host.memory_bytes);
   }
 }
 

@@ -1,7 +1,7 @@
 // The scenes of a server by name, each with its cache.
 //
 // A host that is in use outlives its unloading: whoever holds it finishes with it. The caches share
-// one budget in equal parts, which change when scenes come and go.
+// one budget by the scenes' weights; their parts change when scenes come and go.
 // Thread safety: all methods may be called from any thread.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,14 +23,18 @@ namespace linetree {
 struct NamedHost {
   std::string name;
   std::shared_ptr<SceneHost> host;
-  std::shared_ptr<AuditCounts> audit;     // of this host's answers
-  std::shared_ptr<AnswerCounts> answers;  // of this host's answers, too
+  std::shared_ptr<AuditCounts> audit;       // of this host's answers
+  std::shared_ptr<AnswerCounts> answers{};  // of this host's answers, too
+  double weight = 1;                        // its caches' part of the budget, by the sum of all
+  uint64_t memory_bytes = 0;                // that is, when this was looked up
   // The scene's message, serialized, which edits start from.
-  std::shared_ptr<const std::string> content;
+  std::shared_ptr<const std::string> content{};
   // What the host took over from the one that it replaced.
   Adopted adopted{};
   double adopt_ms = 0;
 };
+
+inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
 
 class SceneStore {
  public:
@@ -41,12 +46,14 @@ class SceneStore {
 
   explicit SceneStore(const Limits& limits) : limits_(limits) {}
 
-  // Keeps the scene under `name`. The same content again is a no-op that keeps the warm cache;
-  // other content is ALREADY_EXISTS unless `replace`: then it takes over what is known of all that
-  // is the same in both, and frames that are under way in the former scene go on without a cache.
-  // RESOURCE_EXHAUSTED when the store is full; all is then as it was. One call at a time.
+  // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
+  // ALREADY_EXISTS unless `replace`: then it takes over what is known of all that is the same in
+  // both, and frames that are under way in the former scene go on without a cache.
+  // RESOURCE_EXHAUSTED when the store is full; all is then as it was. Without a `weight`, which
+  // lies between the bounds above, the scene keeps that of the name, or gets 1. One call at a time.
   absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
-                                bool replace, std::shared_ptr<const std::string> content = nullptr);
+                                bool replace, std::optional<double> weight = std::nullopt,
+                                std::shared_ptr<const std::string> content = nullptr);
 
   // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
   absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
@@ -64,12 +71,11 @@ class SceneStore {
  private:
   using Hosts = std::map<std::string, NamedHost>;
 
-  // What to replace (nothing: a null host), or why the scene cannot be added.
+  // What is there now (nothing: a null host), or why the scene cannot be added.
   absl::StatusOr<NamedHost> CheckAdd(const std::string& name, const Scene& scene,
                                      bool replace) const;
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
-  // Of a scene in the place of `former`, or in addition.
-  uint64_t ShareOf(const NamedHost& former) const;
+  static void Adopt(const NamedHost& former, NamedHost& added);
   void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 

@@ -60,7 +60,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (auto status = server->StartHttp(options); !status.ok()) return status;
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
   if (auto status = server->Listen(options, *credentials); !status.ok()) return status;
-  server->ready_ = true;
+  server->SetReady(false);
+  auto status = server->backend_.WarmUp([server = server.get()] { server->SetReady(true); });
+  if (!status.ok()) return status;
   if (options.insecure && !IsLoopback(options.listen)) {
     log->warn("{} can be reached from other machines, and --insecure lets them", server->address_);
   }
@@ -71,7 +73,7 @@ absl::Status Server::StartHttp(const ServerOptions& options) {
   if (options.http.empty()) return absl::OkStatus();
   auto http = HttpEndpoint::Start(
       options.http, options.tls,
-      {.is_ready = [this] { return ready_.load(); },
+      {.is_ready = [this] { return is_ready_.load(); },
        .metrics = [this] { return MetricsText(); },
        .may_see_metrics = [this](const std::string& header) { return MaySeeMetrics(header); }});
   if (!http.ok()) return http.status();
@@ -105,14 +107,21 @@ absl::Status Server::Listen(const ServerOptions& options,
     return absl::UnavailableError(absl::StrCat("--listen: cannot listen on ", options.listen));
   }
   address_ = WithPort(options.listen, port);
-  TellHealth();
+  TellHealthOfScenes();
   return absl::OkStatus();
 }
 
-void Server::TellHealth() {
+void Server::SetReady(bool is_ready) {
+  is_ready_ = is_ready;
   auto* health = grpc_->GetHealthCheckService();
   if (health == nullptr) return;
-  health->SetServingStatus(v1::RadianceCache::service_full_name(), true);
+  health->SetServingStatus("", is_ready);
+  health->SetServingStatus(v1::RadianceCache::service_full_name(), is_ready);
+}
+
+void Server::TellHealthOfScenes() {
+  auto* health = grpc_->GetHealthCheckService();
+  if (health == nullptr) return;
   backend_.scenes().Observe([health](const std::string& name, bool there) {
     health->SetServingStatus(absl::StrCat(kSceneHealthPrefix, name), there);
   });
@@ -138,9 +147,11 @@ bool Server::MaySeeMetrics(const std::string& authorization) const {
 }
 
 void Server::Drain(std::chrono::milliseconds timeout_ms) {
-  ready_ = false;
   if (grpc_ == nullptr) return;
+  backend_.StopWarmUps();
+  SetReady(false);
   backend_.scenes().Observe(nullptr);
+  // Whatever else is told from now on is not heard.
   if (auto* health = grpc_->GetHealthCheckService()) health->Shutdown();
   // Once gRPC shuts down, calls that arrive are cancelled without a word: better they hear it from
   // the gate, until there are no others.

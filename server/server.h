@@ -25,8 +25,9 @@ inline constexpr char kSceneHealthPrefix[] = "scene/";
 
 class Server {
  public:
-  // Answers by HTTP if it is wanted, loads the scenes, then listens. INVALID_ARGUMENT for bad
-  // options, certificates, tokens or scenes, UNAVAILABLE when an address cannot be listened on.
+  // Answers by HTTP if it is wanted, loads the scenes, listens, and begins to warm scenes up.
+  // INVALID_ARGUMENT for bad options, certificates, tokens, scenes or camera paths, UNAVAILABLE
+  // when an address cannot be listened on.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options,
                                                        std::shared_ptr<spdlog::logger> log);
   // Drains without waiting.
@@ -39,6 +40,8 @@ class Server {
   // Likewise for HTTP; empty without.
   std::string http_address() const { return http_ ? http_->address() : ""; }
   Backend& backend() { return backend_; }
+  // Whether scenes that were to be warmed up are warm; the health service says the same.
+  bool is_ready() const { return is_ready_; }
 
   // Is not ready from now on, takes no more calls, lets open ones go on for at most `timeout_ms`,
   // then cancels them. Returns when all are done. A second call does nothing.
@@ -55,19 +58,20 @@ class Server {
   absl::Status StartHttp(const ServerOptions& options);
   absl::Status Listen(const ServerOptions& options,
                       const std::shared_ptr<grpc::ServerCredentials>& credentials);
-  // Health of the server and of its scenes, as they come and go.
-  void TellHealth();
+  void SetReady(bool is_ready);
+  // As they come and go.
+  void TellHealthOfScenes();
   std::string MetricsText();
   bool MaySeeMetrics(const std::string& authorization) const;
 
   const std::optional<Tokens> tokens_;
   const std::shared_ptr<spdlog::logger> log_;
   const std::shared_ptr<CallMetrics> metrics_ = std::make_shared<CallMetrics>();
-  std::atomic<bool> ready_{false};
   std::string address_;
   Backend backend_;
   Service service_;
   Gate gate_;
+  std::atomic<bool> is_ready_ = false;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<HttpEndpoint> http_;
 };

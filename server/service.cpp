@@ -1,9 +1,10 @@
 #include "server/service.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/call_observer.h"
+#include "server/call_info.h"
 #include "server/frame_call.h"
 #include "server/log_format.h"
 #include "server/messages.h"
@@ -23,9 +24,11 @@ absl::StatusOr<grpc::ByteBuffer> Handle(const grpc::ByteBuffer& bytes, size_t ma
   return Serialize(*reply);
 }
 
-grpc::ServerUnaryReactor* Finish(grpc::CallbackServerContext* context, const absl::Status& status) {
+grpc::ServerUnaryReactor* Finish(grpc::CallbackServerContext* context, const CallInfo& info,
+                                 const absl::Status& status) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(Finished(status, context));
+  if (status.ok()) SendIdBack(info, context);
+  reactor->Finish(Finished(status, info, context));
   return reactor;
 }
 
@@ -36,17 +39,20 @@ grpc::ServerUnaryReactor* AnswerNow(grpc::CallbackServerContext* context,
                                     grpc::ByteBuffer* reply, const Handler& handler) {
   auto result = Handle<Request>(bytes, max_bytes, handler);
   if (result.ok()) *reply = *std::move(result);
-  return Finish(context, result.status());
+  return Finish(context, ReadCallInfo(context), result.status());
 }
 
-// Counted before anything is built from it: a ray takes several times more memory than bytes.
-absl::Status CheckBatch(const grpc::ByteBuffer& bytes, const ServerLimits& limits) {
+// The rays of a batch that may be parsed. Counted before anything is built from it: a ray takes
+// several times more memory than bytes.
+absl::StatusOr<uint64_t> CheckBatch(const grpc::ByteBuffer& bytes, const ServerLimits& limits) {
   const uint64_t rays = CountField(bytes, v1::TraceRaysRequest::kRaysFieldNumber);
   if (rays > limits.render.max_rays) {
     return absl::ResourceExhaustedError(
         absl::StrCat("rays: expected at most ", limits.render.max_rays, ", got ", rays));
   }
-  return CheckSize(bytes, limits.max_batch_bytes, v1::TraceRaysRequest());
+  const auto status = CheckSize(bytes, limits.max_batch_bytes, v1::TraceRaysRequest());
+  if (!status.ok()) return status;
+  return rays;
 }
 
 absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type,
@@ -61,20 +67,22 @@ absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf
 }  // namespace
 
 grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* request, Bytes* reply) {
+  const CallInfo info = ReadCallInfo(context);
   // What is refused for its size does not wait in the queue.
   const size_t max_bytes = backend_.limits().max_scene_bytes;
   const auto status = CheckSize(*request, max_bytes, v1::LoadSceneRequest());
-  if (!status.ok()) return Finish(context, status);
-  const auto work = [this, context, request,
-                     max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
-    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
+  if (!status.ok()) return Finish(context, info, status);
+  const auto work = [this, request, max_bytes,
+                     id = info.request_id](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
     const auto counted = CheckMessages(*request, v1::LoadSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::LoadSceneRequest>(*request, max_bytes, [this](v1::LoadSceneRequest&& r) {
       return backend_.LoadScene(std::move(r));
     });
   };
-  return QueuedCall::Start(backend_.loads(), context, reply, work, backend_.Busy("loader"));
+  const JobInfo job{.session = info.session, .deadline = info.deadline};
+  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::ListScenes(Context* context, const Bytes* request,
@@ -96,30 +104,34 @@ grpc::ServerUnaryReactor* Service::DescribeScene(Context* context, const Bytes* 
 // What changes the scenes is done one after the other.
 grpc::ServerUnaryReactor* Service::UnloadScene(Context* context, const Bytes* request,
                                                Bytes* reply) {
-  const auto work = [this, context, request](const CancelToken&) {
-    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
+  const CallInfo info = ReadCallInfo(context);
+  const auto work = [this, request, id = info.request_id](const CancelToken&) {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
     return Handle<v1::UnloadSceneRequest>(
         *request, backend_.limits().max_request_bytes,
         [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });
   };
-  return QueuedCall::Start(backend_.loads(), context, reply, work, backend_.Busy("loader"));
+  const JobInfo job{.session = info.session, .deadline = info.deadline};
+  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* request,
                                                Bytes* reply) {
+  const CallInfo info = ReadCallInfo(context);
   const size_t max_bytes = backend_.limits().max_scene_bytes;
   const auto status = CheckSize(*request, max_bytes, v1::UpdateSceneRequest());
-  if (!status.ok()) return Finish(context, status);
-  const auto work = [this, context, request,
-                     max_bytes](const CancelToken&) -> absl::StatusOr<Bytes> {
-    const LogFields fields(LogFields::Fields{{"request_id", RequestIdOf(*context)}});
+  if (!status.ok()) return Finish(context, info, status);
+  const auto work = [this, request, max_bytes,
+                     id = info.request_id](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
     const auto counted = CheckMessages(*request, v1::UpdateSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::UpdateSceneRequest>(
         *request, max_bytes,
         [this](const v1::UpdateSceneRequest& r) { return backend_.UpdateScene(r); });
   };
-  return QueuedCall::Start(backend_.loads(), context, reply, work, backend_.Busy("loader"));
+  const JobInfo job{.session = info.session, .deadline = info.deadline};
+  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* Service::RenderFrame(Context* context,
@@ -134,14 +146,22 @@ grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Service::Fly(Contex
 }
 
 grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* request, Bytes* reply) {
-  const auto status = CheckBatch(*request, backend_.limits());
-  if (!status.ok()) return Finish(context, status);
-  const auto work = [this, request](const CancelToken& cancel) {
-    return Handle<v1::TraceRaysRequest>(
-        *request, backend_.limits().max_batch_bytes,
-        [&](const v1::TraceRaysRequest& r) { return backend_.TraceRays(r, cancel); });
+  const CallInfo info = ReadCallInfo(context);
+  const auto rays = CheckBatch(*request, backend_.limits());
+  if (!rays.ok()) return Finish(context, info, rays.status());
+  const auto work = [this, request, id = info.request_id](const CancelToken& cancel) {
+    return Handle<v1::TraceRaysRequest>(*request, backend_.limits().max_batch_bytes,
+                                        [&](const v1::TraceRaysRequest& r) {
+                                          auto answer = backend_.TraceRays(r, cancel);
+                                          if (answer.ok()) answer->set_request_id(id);
+                                          return answer;
+                                        });
   };
-  return QueuedCall::Start(backend_.renders(), context, reply, work, backend_.Busy("render slot"));
+  const JobInfo job{.priority = Priority::kBatch,
+                    .session = info.session,
+                    .work_rays = std::max<uint64_t>(*rays, 1),
+                    .deadline = info.deadline};
+  return QueuedCall::Start(backend_.renders(), job, info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::GetStats(Context* context, const Bytes* request, Bytes* reply) {

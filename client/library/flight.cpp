@@ -62,17 +62,23 @@ bool Flight::SendAhead(Stream& stream) {
 v1::FlyRequest Flight::RequestFor(size_t index) const {
   v1::FlyRequest message;
   message.set_sequence(index);
+  message.set_pacing(v1::PACING_EVERY);
+  if (index == next_) message.set_resume_token(resume_token_);
   *message.mutable_frame() =
       FrameRequestToWire(plan_.scene, plan_.requests[index], "", plan_.all_layers);
   return message;
 }
 
-absl::StatusOr<Frame> Flight::ReadFrame(Stream& stream) const {
+absl::StatusOr<Frame> Flight::ReadFrame(Stream& stream) {
   const FrameRequest& request = plan_.requests[next_];
   FrameAssembler assembler(request.width, request.height, plan_.all_layers);
   v1::FlyReply reply;
   while (!assembler.complete()) {
     if (!stream.Read(&reply)) return absl::OutOfRangeError("the server ended the flight early");
+    if (reply.has_farewell()) {
+      resume_token_ = reply.farewell().resume_token();
+      continue;
+    }
     if (reply.sequence() != next_) {
       return absl::DataLossError(absl::StrCat("expected a chunk of frame ", next_,
                                               ", got one of frame ", reply.sequence()));

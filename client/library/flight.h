@@ -35,13 +35,14 @@ class Flight {
   bool SendAhead(Stream& stream);
   v1::FlyRequest RequestFor(size_t index) const;
   // Reads the next frame; OutOfRange when the stream ends before it is complete.
-  absl::StatusOr<Frame> ReadFrame(Stream& stream) const;
+  absl::StatusOr<Frame> ReadFrame(Stream& stream);
 
   const Caller& caller_;
   v1::RadianceCache::Stub& stub_;
   const FlightPlan plan_;
-  size_t next_ = 0;  // the first frame that is missing
-  size_t sent_ = 0;  // over the stream that is open: viewpoints before this one
+  size_t next_ = 0;           // the first frame that is missing
+  std::string resume_token_;  // of the server's farewell; empty: none
+  size_t sent_ = 0;           // over the stream that is open: viewpoints before this one
 };
 
 }  // namespace linetree

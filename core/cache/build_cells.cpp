@@ -26,6 +26,10 @@ struct RadianceCache::Work {
   Judgement judgement;  // kUntried while the cell is not refuted
 
   bool IsOpen() const { return judgement.verdict == Verdict::kUntried; }
+  bool Has(std::span<const int> some) const {
+    return std::all_of(some.begin(), some.end(),
+                       [&](int corner) { return corners[static_cast<size_t>(corner)] != nullptr; });
+  }
   SampleKey KeyOf(int corner, uint32_t forest) const {
     return {GridKey(ref.cell.Corner(corner)), ref.object, ref.pair, forest};
   }
@@ -77,7 +81,9 @@ void RadianceCache::TraceMissing(const Session& session, const std::vector<Sampl
     }
   }
   std::unique_lock lock(mutex_);
-  for (size_t i = 0; i < keys.size(); ++i) samples_.Put(keys[i], samples[i]);
+  for (size_t i = 0; i < keys.size(); ++i) {
+    if (samples[i]) samples_.Put(keys[i], samples[i]);
+  }
 }
 
 BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef> cells,
@@ -89,6 +95,8 @@ BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef>
   for (const auto& stage : stages) {
     const auto missing = CollectMissing(session, works, stage);
     TraceMissing(session, missing, loop, works, stage, stats);
+    // Where the loop was cut short, corners are missing.
+    std::erase_if(works, [&](const Work& work) { return work.IsOpen() && !work.Has(stage); });
     for (Work& work : works) {
       for (const int corner : stage) {
         if (!work.IsOpen()) break;
@@ -101,6 +109,7 @@ BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef>
   loop(works.size(), [&](size_t i) {
     if (works[i].IsOpen()) works[i].judgement = judge_.Decide(works[i].corners);
   });
+  std::erase_if(works, [](const Work& work) { return work.IsOpen(); });
   PublishWorks(session, works, stats);
   return stats;
 }

@@ -90,6 +90,7 @@ class RadianceCache {
 
   // Traces, judges and publishes cells, each of which must have been kUnbuilt; `cells` are
   // distinct. What does not fit into the budget beside cells in use by this session is dropped.
+  // The loop may leave bodies out when it is cancelled: cells that miss one are not built.
   BuildStats Build(const Session& session, std::span<const CellRef> cells,
                    const ParallelLoop& loop);
 

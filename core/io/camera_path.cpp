@@ -9,7 +9,6 @@
 #include "core/io/read_file.h"
 #include "core/io/wire.h"
 #include "core/math/check.h"
-#include "linetree/v1/camera_path.pb.h"
 
 namespace linetree {
 namespace {
@@ -143,6 +142,12 @@ absl::StatusOr<CameraPath> ParseCameraPath(const std::string& text, const std::s
   absl::Status status = ParseProtoText(text, file_name, &source.message);
   if (!status.ok()) return status;
   return BuildPath(source);
+}
+
+absl::StatusOr<CameraPath> CameraPathFromMessage(const v1::CameraPath& message,
+                                                 const std::string& field) {
+  const std::string no_text;
+  return BuildPath({no_text, field, message});
 }
 
 Camera CameraAt(const CameraPath& path, double time_s) {

@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "core/scene/camera.h"
+#include "linetree/v1/camera_path.pb.h"
 
 namespace linetree {
 
@@ -33,6 +34,9 @@ inline constexpr int kMaxPathFrames = 1'000'000;
 // that do not increase, invalid cameras.
 absl::StatusOr<CameraPath> LoadCameraPath(const std::string& path);
 absl::StatusOr<CameraPath> ParseCameraPath(const std::string& text, const std::string& file_name);
+// The same of a message from the wire; errors name `field` in place of the file.
+absl::StatusOr<CameraPath> CameraPathFromMessage(const v1::CameraPath& message,
+                                                 const std::string& field);
 
 // The camera at time_s; before the first keyframe and after the last one, that keyframe's. Eye,
 // look_at, up and fov are interpolated each on its own: straight, or by a cubic whose slope at a

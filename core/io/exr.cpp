@@ -14,6 +14,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -41,7 +42,7 @@ class MemoryStream : public Imf::OStream {
   }
   uint64_t tellp() override { return position_; }
   void seekp(uint64_t position) override { position_ = position; }
-  const std::string& bytes() const { return bytes_; }
+  std::string Take() { return std::move(bytes_); }
 
  private:
   std::string bytes_;
@@ -111,29 +112,6 @@ void AddLayers(Imf::FrameBuffer& buffer, UintLayers& layers, float* depth,
   buffer.insert(kSource, SliceOf(Imf::UINT, layers.source.data(), 1, window));
   buffer.insert(kVerdict, SliceOf(Imf::UINT, layers.verdict.data(), 1, window));
   buffer.insert(kDepth, SliceOf(Imf::FLOAT, depth, 1, window));
-}
-
-std::string EncodeExr(const Frame& frame) {
-  Imf::Header header = HeaderOf(frame);
-  const Imath::Box2i window = header.dataWindow();
-  Imf::FrameBuffer buffer;
-  // OpenEXR takes a pointer to non-const for reading and writing alike.
-  AddBeauty(buffer, const_cast<float*>(frame.radiance.data()), window);
-  UintLayers layers(0);
-  if (HasLayers(frame)) {
-    layers = PackLayers(frame);
-    AddLayers(buffer, layers, const_cast<float*>(frame.depth.data()), window);
-  }
-  for (auto channel = buffer.begin(); channel != buffer.end(); ++channel) {
-    header.channels().insert(channel.name(), Imf::Channel(channel.slice().type));
-  }
-  MemoryStream stream;
-  {
-    Imf::OutputFile file(stream, header);
-    file.setFrameBuffer(buffer);
-    file.writePixels(frame.height);
-  }
-  return stream.bytes();
 }
 
 template <class Attribute, class Value>
@@ -233,10 +211,33 @@ absl::StatusOr<Frame> DecodeExr(const std::string& path) {
 
 }  // namespace
 
-absl::Status WriteExr(const Frame& frame, const std::string& path) {
+std::string EncodeExr(const Frame& frame) {
   LT_CHECK(frame.width > 0 && frame.height > 0);
   LT_CHECK(frame.radiance.size() ==
            3 * static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height));
+  Imf::Header header = HeaderOf(frame);
+  const Imath::Box2i window = header.dataWindow();
+  Imf::FrameBuffer buffer;
+  // OpenEXR takes a pointer to non-const for reading and writing alike.
+  AddBeauty(buffer, const_cast<float*>(frame.radiance.data()), window);
+  UintLayers layers(0);
+  if (HasLayers(frame)) {
+    layers = PackLayers(frame);
+    AddLayers(buffer, layers, const_cast<float*>(frame.depth.data()), window);
+  }
+  for (auto channel = buffer.begin(); channel != buffer.end(); ++channel) {
+    header.channels().insert(channel.name(), Imf::Channel(channel.slice().type));
+  }
+  MemoryStream stream;
+  {
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(frame.height);
+  }
+  return stream.Take();
+}
+
+absl::Status WriteExr(const Frame& frame, const std::string& path) {
   return WriteFileAtomically(path, EncodeExr(frame));
 }
 

@@ -1,4 +1,5 @@
-// Frames as OpenEXR files: 32-bit float, ZIP, one part, scanlines from the top.
+// Frames as OpenEXR files, on disk or in memory: 32-bit float, ZIP, one part, scanlines from the
+// top.
 //
 // Channels
 //   R G B    float  linear radiance
@@ -27,7 +28,10 @@ inline constexpr uint32_t kExrBackgroundObject = 0xFFFFFFFF;
 // Largest picture that is read: a header may claim any size.
 inline constexpr int64_t kMaxExrPixels = int64_t{1} << 28;
 
-// Writes the whole file or nothing (atomic_file.h). Layers are written when they are all there.
+// The bytes of the file. Layers are written when they are all there.
+std::string EncodeExr(const Frame& frame);
+
+// Writes the whole file or nothing (atomic_file.h).
 absl::Status WriteExr(const Frame& frame, const std::string& path);
 
 // Reads any EXR file that has R, G and B; layers and attributes are taken where they are present

@@ -26,7 +26,7 @@ absl::Status PngError(const std::string& path, const png_image& image) {
 
 }  // namespace
 
-absl::Status WritePng(const Picture8& picture, const std::string& path) {
+absl::StatusOr<std::string> EncodePng(const Picture8& picture) {
   LT_CHECK(picture.width > 0 && picture.height > 0);
   LT_CHECK(picture.rgb.size() ==
            3 * static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height));
@@ -38,10 +38,16 @@ absl::Status WritePng(const Picture8& picture, const std::string& path) {
   std::string bytes(size, '\0');
   if (png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) ==
       0) {
-    return absl::InternalError(absl::StrCat("cannot encode ", path, ": ", image.message));
+    return absl::InternalError(absl::StrCat("cannot encode a PNG file: ", image.message));
   }
   bytes.resize(size);
-  return WriteFileAtomically(path, bytes);
+  return bytes;
+}
+
+absl::Status WritePng(const Picture8& picture, const std::string& path) {
+  const auto bytes = EncodePng(picture);
+  if (!bytes.ok()) return bytes.status();
+  return WriteFileAtomically(path, *bytes);
 }
 
 absl::StatusOr<Picture8> ReadPng(const std::string& path) {

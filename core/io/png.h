@@ -1,4 +1,4 @@
-// 8-bit sRGB pictures as PNG files.
+// 8-bit sRGB pictures as PNG files, on disk or in memory.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@
 #include "core/io/layer_colors.h"
 
 namespace linetree {
+
+// The bytes of the file.
+absl::StatusOr<std::string> EncodePng(const Picture8& picture);
 
 // Writes the whole file or nothing (atomic_file.h).
 absl::Status WritePng(const Picture8& picture, const std::string& path);

@@ -1,5 +1,7 @@
 #include "core/io/wire_frame.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
@@ -25,6 +27,14 @@ void AppendBytes(const std::vector<Value>& layer, size_t start, size_t count, st
   for (size_t i = start; i < start + count; ++i) out->push_back(static_cast<char>(layer[i]));
 }
 
+void AppendHalves(const std::vector<float>& layer, size_t start, size_t count, std::string* out) {
+  for (size_t i = start; i < start + count; ++i) {
+    const uint16_t bits = Imath::half(layer[i]).bits();
+    out->push_back(static_cast<char>(bits & 0xff));
+    out->push_back(static_cast<char>(bits >> 8));
+  }
+}
+
 bool AllBelow(const std::string& bytes, int limit) {
   return std::all_of(bytes.begin(), bytes.end(),
                      [limit](char c) { return static_cast<unsigned char>(c) < limit; });
@@ -32,11 +42,65 @@ bool AllBelow(const std::string& bytes, int limit) {
 
 }  // namespace
 
+absl::StatusOr<FrameFormat> FrameFormatFromWire(const v1::RenderFrameRequest& message,
+                                                absl::string_view path) {
+  static_assert(v1::CODEC_JPEG == static_cast<int>(FrameCodec::kJpeg) + 1);
+  if (!v1::Codec_IsValid(message.codec())) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, "codec: expected one of the values in service.proto, got ",
+                     static_cast<int>(message.codec())));
+  }
+  FrameFormat format{.all_layers = message.all_layers()};
+  if (message.codec() != v1::CODEC_UNSPECIFIED) {
+    format.codec = static_cast<FrameCodec>(message.codec() - 1);
+  }
+  if (message.jpeg_quality() > kMaxJpegQuality) {
+    return absl::InvalidArgumentError(absl::StrCat(path, "jpeg_quality: expected at most ",
+                                                   kMaxJpegQuality, ", got ",
+                                                   message.jpeg_quality()));
+  }
+  if (message.jpeg_quality() > 0) format.jpeg_quality = static_cast<int>(message.jpeg_quality());
+  if (format.all_layers && !HoldsLayers(format.codec)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, "all_layers: expected a codec that holds layers, not ",
+                     v1::Codec_Name(message.codec())));
+  }
+  return format;
+}
+
+absl::StatusOr<FrameChunks> FrameChunks::Make(Frame frame, const FrameFormat& format) {
+  FrameChunks chunks(std::move(frame), format);
+  if (!format.all_layers) chunks.DropLayers();
+  if (!IsFile(format.codec)) return chunks;
+  auto file = EncodeFile(chunks.frame_, format);
+  if (!file.ok()) return file.status();
+  chunks.file_ = *std::move(file);
+  // Only what the end says is still needed.
+  chunks.DropLayers();
+  chunks.frame_.radiance = {};
+  return chunks;
+}
+
+void FrameChunks::DropLayers() {
+  frame_.object = {};
+  frame_.source = {};
+  frame_.verdict = {};
+  frame_.depth = {};
+}
+
+bool FrameChunks::AtEnd() const {
+  return IsFile(format_.codec) ? sent_ == file_.size() : y_ >= frame_.height;
+}
+
 bool FrameChunks::Next(v1::FrameChunk* chunk) {
   if (ended_) return false;
-  if (y_ >= frame_.height) {
+  if (AtEnd()) {
     ended_ = true;
     FillEnd(chunk->mutable_end());
+    return true;
+  }
+  if (IsFile(format_.codec)) {
+    FillPart(chunk->mutable_file());
     return true;
   }
   FillTile(chunk->mutable_tile());
@@ -48,6 +112,13 @@ bool FrameChunks::Next(v1::FrameChunk* chunk) {
   return true;
 }
 
+void FrameChunks::FillPart(v1::FilePart* part) {
+  part->set_offset(sent_);
+  part->set_file_bytes(file_.size());
+  part->set_data(file_.substr(sent_, kFilePartBytes));
+  sent_ += part->data().size();
+}
+
 void FrameChunks::FillTile(v1::Tile* tile) const {
   tile->Clear();
   const int width = std::min(kWireTileSide, frame_.width - x_);
@@ -56,12 +127,17 @@ void FrameChunks::FillTile(v1::Tile* tile) const {
   tile->set_y(static_cast<uint32_t>(y_));
   tile->set_width(static_cast<uint32_t>(width));
   tile->set_height(static_cast<uint32_t>(height));
-  tile->mutable_radiance()->Reserve(3 * width * height);
+  const bool is_half = format_.codec == FrameCodec::kHalf;
+  if (!is_half) tile->mutable_radiance()->Reserve(3 * width * height);
   const auto count = static_cast<size_t>(width);
   for (int row = 0; row < height; ++row) {
     const size_t start = RowStart(*tile, row, frame_.width);
-    AppendRow(frame_.radiance, 3 * start, 3 * count, tile->mutable_radiance());
-    if (!all_layers_) continue;
+    if (is_half) {
+      AppendHalves(frame_.radiance, 3 * start, 3 * count, tile->mutable_radiance_half());
+    } else {
+      AppendRow(frame_.radiance, 3 * start, 3 * count, tile->mutable_radiance());
+    }
+    if (!format_.all_layers) continue;
     AppendRow(frame_.object, start, count, tile->mutable_object());
     AppendBytes(frame_.source, start, count, tile->mutable_source());
     AppendBytes(frame_.verdict, start, count, tile->mutable_verdict());
@@ -100,6 +176,7 @@ absl::Status FrameAssembler::Add(const v1::FrameChunk& chunk) {
       return AddTile(chunk.tile());
     case v1::FrameChunk::kEnd:
       return AddEnd(chunk.end());
+    case v1::FrameChunk::kFile:
     case v1::FrameChunk::CONTENT_NOT_SET:
       break;
   }

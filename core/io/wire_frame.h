@@ -1,9 +1,13 @@
-// A frame as the stream of messages that carries it: tiles in row-major order, then the end.
+// A frame as the stream of messages that carries it: tiles in row-major order or a file in parts,
+// then the end.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/io/frame_codec.h"
 #include "core/render/frame.h"
 #include "linetree/v1/service.pb.h"
 
@@ -12,20 +16,38 @@ namespace linetree {
 // Side of a tile in pixels; those on the right and lower rim are smaller.
 inline constexpr int kWireTileSide = 64;
 
+// No message of a frame is larger when it is serialized; its parts of files are a little smaller.
+inline constexpr size_t kMaxChunkBytes = size_t{256} << 10;
+inline constexpr size_t kFilePartBytes = kMaxChunkBytes - 1024;
+
+inline constexpr int kMaxJpegQuality = 100;
+
+// INVALID_ARGUMENT, naming the field, for an unknown codec, a quality out of range, and layers in a
+// format that has none. `path` is a prefix as in wire.h.
+absl::StatusOr<FrameFormat> FrameFormatFromWire(const v1::RenderFrameRequest& message,
+                                                absl::string_view path);
+
 // Cuts a frame into messages.
 class FrameChunks {
  public:
-  FrameChunks(Frame frame, bool all_layers) : frame_(std::move(frame)), all_layers_(all_layers) {}
+  // Files are encoded here, which takes its time. INTERNAL when that fails.
+  static absl::StatusOr<FrameChunks> Make(Frame frame, const FrameFormat& format);
 
   // Fills *chunk with the next message; false when the last one (FrameEnd) has been handed out.
   bool Next(v1::FrameChunk* chunk);
 
  private:
+  FrameChunks(Frame frame, const FrameFormat& format) : frame_(std::move(frame)), format_(format) {}
+  void DropLayers();
+  bool AtEnd() const;
   void FillTile(v1::Tile* tile) const;
+  void FillPart(v1::FilePart* part);
   void FillEnd(v1::FrameEnd* end) const;
 
-  Frame frame_;
-  bool all_layers_;
+  Frame frame_;  // without its pixels when there is a file
+  FrameFormat format_;
+  std::string file_;  // of codecs of files
+  size_t sent_ = 0;   // of file_
   bool ended_ = false;
   int x_ = 0;  // of the next tile
   int y_ = 0;  // frame_.height when only the end is left

@@ -45,6 +45,8 @@ class Batch {
 
   template <class F>
   void ForChunks(size_t count, RayCounts* counts, F body);
+  // Who cancels does not wait for what others would learn either.
+  ParallelLoop UnlessCancelled();
   void CollectPending();
   std::vector<uint32_t> Unanswered() const;
   // Looks the pending rays up; keeps those whose cell is unbuilt, with the cells in `unbuilt`.
@@ -86,6 +88,15 @@ void Batch::ForChunks(size_t count, RayCounts* counts, F body) {
       },
       &stats_.cpu_ms);
   for (const RayCounts& c : chunk_counts) *counts += c;
+}
+
+ParallelLoop Batch::UnlessCancelled() {
+  return [this](size_t count, const std::function<void(size_t)>& body) {
+    const auto unless_cancelled = [&](size_t i) {
+      if (!IsCancelled()) body(i);
+    };
+    pool_.ParallelFor(count, unless_cancelled, &stats_.cpu_ms);
+  };
 }
 
 void Batch::FindHits() {
@@ -172,9 +183,7 @@ void Batch::AnswerFromCache() {
   CollectPending();
   if (pending_.empty()) return;
   const RadianceCache::Session session = cache_.Open(options_.limits);
-  const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
-    pool_.ParallelFor(count, body, &stats_.cpu_ms);
-  };
+  const ParallelLoop loop = UnlessCancelled();
   std::vector<CellId> unbuilt;
   LookUp(session, unbuilt);
   // Each round goes one level deeper, unless another client's needs took cells away meanwhile.
@@ -237,13 +246,7 @@ void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCa
 }
 
 void Batch::TraceWithTrees(CertifiedTrees& trees) {
-  // Who cancels does not wait for what others would learn either.
-  const ParallelLoop loop = [&](size_t count, const std::function<void(size_t)>& body) {
-    const auto unless_cancelled = [&](size_t i) {
-      if (!IsCancelled()) body(i);
-    };
-    pool_.ParallelFor(count, unless_cancelled, &stats_.cpu_ms);
-  };
+  const ParallelLoop loop = UnlessCancelled();
   const std::vector<uint32_t> rest = Unanswered();
   for (int wave = 0; wave < kWaves && !IsCancelled(); ++wave) {
     std::vector<uint32_t> part;

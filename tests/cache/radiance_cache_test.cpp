@@ -95,6 +95,33 @@ TEST_F(RadianceCacheTest, EvictionTakesWhatWasUsedLongestAgo) {
   EXPECT_TRUE(evicted) << "the budget was too large for the test to mean anything";
 }
 
+TEST_F(RadianceCacheTest, ACancelledBuildKeepsTheCellsThatAreDone) {
+  RadianceCache whole(tracer_, {});
+  test::Random random(44);
+  std::vector<CellRef> roots;
+  while (roots.size() < 12) {
+    const auto query = RandomQuery(whole, random);
+    if (!query) continue;
+    const CellRef root{query->object, query->pair, CellId{}};
+    if (std::find(roots.begin(), roots.end(), root) == roots.end()) roots.push_back(root);
+  }
+  const uint64_t all = whole.Build(whole.Open({}), roots, kSerial).cells_tried;
+  EXPECT_EQ(all, roots.size());
+  uint64_t kept_some = 0;
+  for (int bodies = 0; bodies < 250; bodies += 3) {
+    RadianceCache cache(tracer_, {});
+    int left = bodies;
+    const ParallelLoop cut_short = [&](size_t count, const std::function<void(size_t)>& body) {
+      for (size_t i = 0; i < count && left > 0; ++i, --left) body(i);
+    };
+    const BuildStats built = cache.Build(cache.Open({}), roots, cut_short);
+    EXPECT_EQ(cache.CellCount(), built.cells_tried) << bodies;
+    EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+    kept_some += built.cells_tried > 0 && built.cells_tried < all ? 1 : 0;
+  }
+  EXPECT_GT(kept_some, 0u) << "always all or nothing";
+}
+
 TEST_F(RadianceCacheTest, CellsBelongToTheirPathLimits) {
   RadianceCache cache(tracer_, {});
   test::Random random(43);

@@ -82,7 +82,7 @@ std::vector<v1::FrameChunk> ChunksOf(int width, int height) {
   frame.width = width;
   frame.height = height;
   frame.radiance.resize(static_cast<size_t>(3 * width * height), 0.5f);
-  FrameChunks chunks(frame, false);
+  FrameChunks chunks = *FrameChunks::Make(frame, {});
   std::vector<v1::FrameChunk> messages;
   v1::FrameChunk chunk;
   while (chunks.Next(&chunk)) messages.push_back(chunk);

@@ -22,6 +22,8 @@ ServerOptions SmallServer() {
   options.limits.scene = SmallScenes();
   options.limits.max_scenes = 4;
   options.limits.max_scene_messages = 5000;
+  options.limits.max_warm_up_frames = 3;
+  options.scene_root = std::string(LINETREE_SOURCE_DIR) + "/tests/system";
   return options;
 }
 
@@ -113,15 +115,19 @@ const std::pair<char, const char*> kTexts[] = {
         objects { material: "m" sphere { radius: 1 } }
         objects { material: "m" box { min { x: 2 } max { x: 3 y: 1 z: 1 } } }
         objects { material: "m" polygon { vertices { } vertices { x: 1 } vertices { y: 1 } } } })"},
+    {'0', R"(name: "e" file: "ball.textproto" memory_weight: 0.5 warm_up { frames: 2 width: 8
+        height: 8 path { keyframes { camera { eye { z: 8 } } } } })"},
     {'1', ""},
     {'2', R"(scene: "ball")"},
     {'3', R"(scene: "b")"},
     {'4', R"(scene: "ball" width: 12 height: 9 camera_name: "front" all_layers: true
         options { mode: CACHED judge: PAPER max_relative_error: 0.1 max_depth: 4 lanes: LANES_SIMD }
-        sampling { samples: 4 pattern: SAMPLES_JITTERED seed: 7 })"},
+        sampling { samples: 4 pattern: SAMPLES_JITTERED seed: 7 } codec: CODEC_JPEG
+        jpeg_quality: 80)"},
     {'4', R"(scene: "ball" width: 9 height: 12 camera { eye { y: 3 z: 8 } look_at { y: 1 }
         up { y: 1 } fov_deg: 40 } options { judge: JUDGE_CERTIFIED min_weight: 0.5 })"},
-    {'5', R"(sequence: 9 frame { scene: "ball" width: 5 height: 5 })"},
+    {'5', R"(sequence: 9 pacing: PACING_NEWEST while_moving { divisor: 2 max_relative_error: 0.5 }
+        resume_token: "x" frame { scene: "ball" width: 5 height: 5 })"},
     {'6', R"(scene: "ball" rays { origin { y: 3 z: 8 } direction { z: -1 } }
         rays { origin { x: 1 } direction { x: -1 y: 0.5 } } options { max_relative_error: 0 })"},
     {'7', R"(scene: "ball")"},
@@ -140,7 +146,7 @@ std::vector<std::string> Seeds() {
   std::vector<std::string> seeds;
   for (const auto& [type, text] : kTexts) seeds.push_back(type + std::string(text));
   v1::RenderFrameRequest frame;
-  LT_CHECK(google::protobuf::TextFormat::ParseFromString(kTexts[6].second, &frame));
+  LT_CHECK(google::protobuf::TextFormat::ParseFromString(kTexts[7].second, &frame));
   v1::LoadSceneRequest scene;
   LT_CHECK(google::protobuf::TextFormat::ParseFromString(kTexts[2].second, &scene));
   seeds.push_back("e" + frame.SerializeAsString());

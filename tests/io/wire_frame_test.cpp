@@ -1,6 +1,16 @@
 #include "core/io/wire_frame.h"
 
+#include <Imath/half.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "core/io/exr.h"
+#include "core/io/jpeg.h"
+#include "core/io/layer_colors.h"
+#include "core/io/png.h"
+#include "tests/io/temp_dir.h"
 
 namespace linetree {
 namespace {
@@ -25,12 +35,32 @@ Frame CountedFrame(int width, int height) {
   return frame;
 }
 
-std::vector<v1::FrameChunk> Cut(const Frame& frame, bool all_layers) {
-  FrameChunks chunks(frame, all_layers);
+std::vector<v1::FrameChunk> Cut(const Frame& frame, const FrameFormat& format) {
+  auto chunks = FrameChunks::Make(frame, format);
+  EXPECT_TRUE(chunks.ok()) << chunks.status();
   std::vector<v1::FrameChunk> messages;
   v1::FrameChunk chunk;
-  while (chunks.Next(&chunk)) messages.push_back(chunk);
+  while (chunks->Next(&chunk)) {
+    EXPECT_LE(chunk.ByteSizeLong(), kMaxChunkBytes);
+    messages.push_back(chunk);
+  }
   return messages;
+}
+
+std::vector<v1::FrameChunk> Cut(const Frame& frame, bool all_layers) {
+  return Cut(frame, FrameFormat{.all_layers = all_layers});
+}
+
+// What the parts of a file hold together.
+std::string FileOf(const std::vector<v1::FrameChunk>& chunks) {
+  std::string file;
+  for (const auto& chunk : chunks) {
+    if (chunk.has_end()) break;
+    EXPECT_EQ(chunk.file().offset(), file.size());
+    file += chunk.file().data();
+  }
+  EXPECT_EQ(chunks[0].file().file_bytes(), file.size());
+  return file;
 }
 
 absl::Status AddAll(FrameAssembler& assembler, const std::vector<v1::FrameChunk>& chunks) {
@@ -93,6 +123,77 @@ TEST(WireFrameTest, WithoutAllLayersThereIsOnlyRadiance) {
   EXPECT_TRUE(back.depth.empty());
 }
 
+TEST(WireFrameTest, TilesOfMostBytesStayBelowTheBound) {
+  Frame frame = CountedFrame(128, 128);
+  std::fill(frame.object.begin(), frame.object.end(), -1);  // takes most as a varint
+  EXPECT_EQ(Cut(frame, true).size(), 5u);
+}
+
+TEST(WireFrameTest, HalvesAreTheFloatsRounded) {
+  Frame frame = CountedFrame(70, 66);
+  frame.radiance[5] = 1e-6f;
+  frame.radiance[6] = 1e9f;
+  for (const bool all_layers : {false, true}) {
+    size_t values = 0;
+    for (const auto& chunk : Cut(frame, {all_layers, FrameCodec::kHalf})) {
+      const v1::Tile& tile = chunk.tile();
+      EXPECT_EQ(tile.radiance_size(), 0);
+      EXPECT_EQ(static_cast<size_t>(tile.depth_size()),
+                all_layers ? tile.radiance_half().size() / 6 : 0);
+      for (size_t i = 0; i < tile.radiance_half().size() / 2; ++i, ++values) {
+        const auto byte = [&](size_t k) {
+          return static_cast<unsigned>(static_cast<uint8_t>(tile.radiance_half()[k]));
+        };
+        Imath::half value;
+        value.setBits(static_cast<uint16_t>(byte(2 * i) | byte(2 * i + 1) << 8));
+        const size_t x = tile.x() + i / 3 % tile.width(), y = tile.y() + i / 3 / tile.width();
+        const float sent = frame.radiance[3 * (y * 70 + x) + i % 3];
+        if (sent > 65519) {
+          EXPECT_TRUE(value.isInfinity());
+        } else {
+          EXPECT_LE(std::abs(value - sent), std::max(0x1p-11 * sent, 0x1p-25)) << sent;
+        }
+      }
+    }
+    EXPECT_EQ(values, frame.radiance.size());
+  }
+}
+
+TEST(WireFrameTest, FilesAreWhatTheyWouldBeOnDisk) {
+  Frame frame = CountedFrame(400, 300);
+  std::mt19937 random(7);  // several parts, however they are compressed
+  for (float& value : frame.radiance) value = static_cast<float>(random() % 360'000);
+  const TempDir folder;
+  const auto chunks = Cut(frame, {true, FrameCodec::kExr});
+  EXPECT_GT(chunks.size(), 3u);
+  const std::string path = folder.File("sent.exr");
+  std::ofstream(path, std::ios::binary) << FileOf(chunks);
+  const auto exr = ReadExr(path);
+  ASSERT_TRUE(exr.ok()) << exr.status();
+  EXPECT_EQ(exr->radiance, frame.radiance);
+  EXPECT_EQ(exr->object, frame.object);
+  EXPECT_EQ(chunks.back().end().white(), frame.white);
+  EXPECT_EQ(chunks.back().end().stats().width(), 400u);
+  std::ofstream(path, std::ios::binary) << FileOf(Cut(frame, {false, FrameCodec::kExr}));
+  EXPECT_TRUE(ReadExr(path)->object.empty());
+
+  frame = CountedFrame(400, 300);
+  frame.white = 360'000;  // what its radiance goes up to
+  const Picture8 shown = PaintLayer(frame, Layer::kBeauty);
+  EXPECT_EQ(FileOf(Cut(frame, {false, FrameCodec::kPng})), *EncodePng(shown));
+  const std::string jpeg = FileOf(Cut(frame, {false, FrameCodec::kJpeg, 95}));
+  EXPECT_LT(FileOf(Cut(frame, {false, FrameCodec::kJpeg, 20})).size(), jpeg.size());
+  const auto decoded = DecodeJpeg(jpeg);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  ASSERT_EQ(decoded->rgb.size(), shown.rgb.size());
+  double sum = 0;
+  for (size_t i = 0; i < shown.rgb.size(); ++i) {
+    sum += std::abs(int{decoded->rgb[i]} - int{shown.rgb[i]});
+  }
+  EXPECT_LT(sum / static_cast<double>(shown.rgb.size()), 3) << "codes of 255";
+  EXPECT_TRUE(absl::IsInvalidArgument(DecodeJpeg("no picture").status()));
+}
+
 // What a sender may do to the chunks of a 100 x 70 frame that must not get through.
 struct Damage {
   const char* what;
@@ -110,6 +211,7 @@ TEST_P(WireFrameDamage, IsDataLoss) {
 
 using Chunks = std::vector<v1::FrameChunk>;
 const Damage kDamages[] = {
+    {"a_file", [](Chunks& c) { c[0].mutable_file()->set_file_bytes(1); }},
     {"missing_tile", [](Chunks& c) { c.erase(c.begin() + 1); }},
     {"tile_twice", [](Chunks& c) { c.insert(c.begin(), c[0]); }},
     {"nothing_in_it", [](Chunks& c) { c[0].clear_content(); }},

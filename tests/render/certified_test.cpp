@@ -69,6 +69,39 @@ std::shared_ptr<const Scene> CrowdedScene(uint64_t seed) {
   return scene;
 }
 
+// Both lanes and both judges.
+TEST(CertifiedTest, CancelledFramesKeepTheCellsThatAreDone) {
+  WorkerPool pool(2);
+  const auto scene = CrowdedScene(2);
+  for (const auto& [lanes, judge] : {std::pair(Lanes::kScalar, JudgeKind::kCertified),
+                                     {Lanes::kSimd, JudgeKind::kCertified},
+                                     {Lanes::kScalar, JudgeKind::kPaper}}) {
+    SceneHost host(scene, {.always_ask = true});
+    FrameRequest request = Request(*scene, Mode::kCached, 512);
+    request.height = 600;  // several batches of rays, several slices of blocks
+    request.options.lanes = lanes;
+    request.options.judge = judge;
+    request.options.max_relative_error = 0.1;
+    CancelToken cancel;
+    const auto frame = host.RenderFrame(request, pool, &cancel, [&](double share) {
+      EXPECT_LT(share, 1);
+      if (share >= 0.9) cancel.Cancel();
+    });
+    EXPECT_TRUE(absl::IsCancelled(frame.status()));
+    EXPECT_EQ(host.totals().frames, 0u);
+    const uint64_t cells =
+        host.cache().CellCount() + host.paths().CellCount() + host.surfaces().CellCount();
+    EXPECT_GT(cells, 0u);
+    EXPECT_EQ(host.cache().ByteSize(), host.cache().CountBytes());
+    if (judge == JudgeKind::kPaper) continue;
+    request.width = request.height = 96;
+    request.options.max_relative_error = 0;
+    const Frame warm = test::RenderFrame(host, request, pool);
+    request.options.mode = Mode::kClassical;
+    EXPECT_EQ(warm.radiance, test::RenderFrame(host, request, pool).radiance);
+  }
+}
+
 TEST(CertifiedTest, RandomScenesAreClassicalBitForBit) {
   WorkerPool pool(2);
   for (uint64_t seed = 1; seed <= 12; ++seed) {

@@ -231,7 +231,8 @@ TEST(EndingsTest, DrainingFinishesAFrameThatIsUnderWay) {
   std::thread drain([&] { running.server().Drain(kAsLongAsItTakes); });
   while (stream->Read(&chunk)) {
   }
-  EXPECT_TRUE(stream->Finish().ok());
+  const auto status = stream->Finish();
+  EXPECT_TRUE(status.ok()) << status.error_code() << ": " << status.error_message();
   EXPECT_TRUE(chunk.has_end());
   drain.join();
 }

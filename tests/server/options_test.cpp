@@ -64,6 +64,20 @@ const BadOption kBadOptions[] = {
      [](Options& o) {
        o.scenes = {{"a", "a.nff"}, {"a", "b.nff"}};
      }},
+    {"--scene-weight",
+     [](Options& o) {
+       o.scene_weights = {{"gone", 1}};
+     }},
+    {"--scene-weight",
+     [](Options& o) {
+       o.scenes = {{"a", "a.nff"}};
+       o.scene_weights = {{"a", kNan}};
+     }},
+    {"--warm-up",
+     [](Options& o) {
+       o.warm_ups = {{"gone", "path"}};
+     }},
+    {"--scene-root", [](Options& o) { o.scene_root = "/gone"; }},
     {"--listen", [](Options& o) { o.listen.clear(); }},
     {"--listen", [](Options& o) { o.listen = "0.0.0.0:1"; }},
     {"--listen",
@@ -88,6 +102,7 @@ const BadOption kBadOptions[] = {
     {"--epsilon", [](Options& o) { o.defaults.max_relative_error = kNan; }},
     {"--max-depth", [](Options& o) { o.defaults.limits.max_depth = 17; }},
     {"--min-weight", [](Options& o) { o.defaults.limits.min_weight = -1; }},
+    {"--max-flight-s", [](Options& o) { o.max_flight_s = std::chrono::seconds(-1); }},
     {"--drain-timeout-ms", [](Options& o) { o.drain_timeout_ms = std::chrono::milliseconds(-1); }},
 };
 INSTANTIATE_TEST_SUITE_P(All, BadOptions, testing::ValuesIn(kBadOptions));
@@ -110,6 +125,12 @@ TEST(ServerOptionsTest, SceneFlagsAreNameAndFile) {
   EXPECT_EQ(scene->name, "room");
   EXPECT_EQ(scene->path, "scenes/a=b.nff");
   EXPECT_TRUE(absl::IsInvalidArgument(ParseSceneFlag("room").status()));
+  EXPECT_THAT(std::string(ParseSceneFlag("room", "--warm-up").status().message()),
+              StartsWith("--warm-up:"));
+  EXPECT_EQ(ParseWeightFlag("room=2.5")->weight, 2.5);
+  for (const char* flag : {"room", "room=", "room=x"}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(ParseWeightFlag(flag).status())) << flag;
+  }
 }
 
 }  // namespace

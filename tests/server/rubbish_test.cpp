@@ -77,6 +77,18 @@ const BadFrame kBadFrames[] = {
      StatusCode::INVALID_ARGUMENT, "options.min_weight"},
     {"unknown_mode", [](Request& r) { r.mutable_options()->set_mode(static_cast<v1::Mode>(9)); },
      StatusCode::INVALID_ARGUMENT, "options.mode"},
+    {"unknown_codec", [](Request& r) { r.set_codec(static_cast<v1::Codec>(6)); },
+     StatusCode::INVALID_ARGUMENT, "codec"},
+    {"negative_codec", [](Request& r) { r.set_codec(static_cast<v1::Codec>(-1)); },
+     StatusCode::INVALID_ARGUMENT, "codec"},
+    {"jpeg_of_quality_101", [](Request& r) { r.set_jpeg_quality(101); },
+     StatusCode::INVALID_ARGUMENT, "jpeg_quality"},
+    {"layers_of_a_picture",
+     [](Request& r) {
+       r.set_codec(v1::CODEC_PNG);
+       r.set_all_layers(true);
+     },
+     StatusCode::INVALID_ARGUMENT, "all_layers"},
     {"unknown_judge",
      [](Request& r) { r.mutable_options()->set_judge(static_cast<v1::Judge>(-3)); },
      StatusCode::INVALID_ARGUMENT, "options.judge"},

@@ -75,6 +75,50 @@ TEST(ServiceTest, OtherContentNeedsReplace) {
   running.ExpectServing();
 }
 
+TEST(ServiceTest, AFailedLoadLeavesTheOldSceneAsItIs) {
+  test::RunningServer running;
+  running.ExpectServing();
+  v1::LoadSceneRequest good;
+  good.set_name("ball");
+  good.set_replace(true);
+  *good.mutable_scene() = test::BallScene();
+  const auto load = [&](void (*spoil)(v1::LoadSceneRequest&)) {
+    v1::LoadSceneRequest request = good;
+    spoil(request);
+    grpc::ClientContext context;
+    v1::SceneInfo info;
+    return running.stub().LoadScene(&context, request, &info);
+  };
+  using Request = v1::LoadSceneRequest;
+  const std::vector<std::pair<const char*, void (*)(Request&)>> kBad = {
+      {"objects[0].",
+       [](Request& r) { r.mutable_scene()->mutable_objects(0)->mutable_sphere()->set_radius(-1); }},
+      {"memory_weight:", [](Request& r) { r.set_memory_weight(0); }},
+      {"file:", [](Request& r) { r.set_file("a.nff"); }},
+      {"content:", [](Request& r) { r.clear_content(); }},
+      {"warm_up.path: keyframes:", [](Request& r) { r.mutable_warm_up(); }},
+      {"warm_up.width:",
+       [](Request& r) {
+         auto* key = r.mutable_warm_up()->mutable_path()->add_keyframes();
+         key->mutable_camera()->mutable_eye()->set_z(1);
+         r.mutable_warm_up()->set_width(1'000'000);
+       }},
+      {"warm_up.frames:", [](Request& r) {
+         auto* key = r.mutable_warm_up()->mutable_path()->add_keyframes();
+         key->mutable_camera()->mutable_eye()->set_z(1);
+         r.mutable_warm_up()->set_frames(1001);
+       }}};
+  for (const auto& [field, spoil] : kBad) {
+    const auto status = load(spoil);
+    EXPECT_FALSE(status.ok()) << field;
+    EXPECT_THAT(status.error_message(), testing::StartsWith(field));
+  }
+  running.ExpectServing();
+  const auto stats = running.client().GetStats("ball");
+  EXPECT_EQ(stats->scenes(0).frames(), 2u) << "the same host";
+  EXPECT_EQ(stats->scenes(0).scene_version(), test::BuiltBallScene()->version);
+}
+
 TEST(ServiceTest, AFrameIsTheHostsFrame) {
   test::RunningServer running;
   SceneHost host(test::BuiltBallScene());

@@ -4,6 +4,7 @@ import queue
 import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import grpc
@@ -118,6 +119,29 @@ class Vanishing(unittest.TestCase):
             self.assertEqual(server.stop(), 0)
 
 
+    def test_a_client_that_is_killed_costs_no_more_rays(self):
+        # Its frame would take minutes; there is one place to render.
+        endless = ('width=4000, height=4000, options={"mode": "CLASSICAL", "max_depth": 16, '
+                   '"min_weight": 0}, sampling={"samples": 25}')
+        program = _LAZY_READER.replace("width=1000, height=1000", endless).replace(
+            "for chunk in", 'print("asking", flush=True)\nfor chunk in')
+        with served.Served("--render-slots", "1") as server:
+            server.load_ball()
+            reader = subprocess.Popen(
+                [sys.executable, "-c", program, server.address, served.STUBS],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            self.assertEqual(reader.stdout.readline(), "asking\n")
+            while server.process_cpu_s() < 1:  # then it is being rendered
+                time.sleep(0.01)
+            reader.kill()
+            reader.communicate()
+            chunks = server.stub.RenderFrame(small_frame(), timeout=PATIENCE_S)
+            self.assertEqual(frame_ends(chunks), 1)
+            stats = server.stub.GetStats(service_pb2.GetStatsRequest(), timeout=PATIENCE_S)
+            self.assertEqual(stats.scenes[0].frames, 1)
+            self.assertEqual(server.stop(), 0)
+
+
 class BadStarts(unittest.TestCase):
     def run_with(self, *flags):
         return subprocess.run([served.PROGRAM, *flags], capture_output=True, text=True,
@@ -125,7 +149,9 @@ class BadStarts(unittest.TestCase):
 
     def test_bad_flags_are_named(self):
         for flags in [["--epsilon", "2"], ["--scene", "noequals"], ["--memory", "12"],
-                      ["--max-depth", "99"], ["--threads", "-3"], ["--judge", "supreme"]]:
+                      ["--max-depth", "99"], ["--max-flight-s", "-1"],
+                      ["--warm-up", "gone=path"], ["--scene-weight", "a"],
+                      ["--scene-root", "/gone"], ["--threads", "-3"], ["--judge", "supreme"]]:
             with self.subTest(flags):
                 run = self.run_with(*flags)
                 self.assertNotEqual(run.returncode, 0)

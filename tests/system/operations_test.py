@@ -115,7 +115,7 @@ class Logs(unittest.TestCase):
         self.assertEqual([line["request_id"] for line in loaded], ["shot-7"])
         frame = calls["/linetree.v1.RadianceCache/RenderFrame"]
         self.assertEqual(frame["code"], "NOT_FOUND")
-        self.assertRegex(frame["request_id"], r"^[0-9a-f]{16}$")
+        self.assertRegex(frame["request_id"], r"^[0-9a-f]{32}$")
         self.assertGreater(float(frame["ms"]), 0)
 
     def test_a_full_disk_or_a_reader_that_stops_costs_lines_only(self):

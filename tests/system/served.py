@@ -31,7 +31,7 @@ STUBS = _stubs.name
 subprocess.run(
     ["protoc", f"-I{PROJECT / 'proto'}", f"--python_out={STUBS}", f"--grpc_out={STUBS}",
      "--plugin=protoc-gen-grpc=/usr/bin/grpc_python_plugin",
-     "linetree/v1/scene.proto", "linetree/v1/service.proto"],
+     "linetree/v1/scene.proto", "linetree/v1/camera_path.proto", "linetree/v1/service.proto"],
     check=True)
 sys.path.insert(0, STUBS)
 
@@ -79,6 +79,11 @@ class Served:
     def load_ball(self, name="ball"):
         return self.stub.LoadScene(
             service_pb2.LoadSceneRequest(name=name, text=SCENE_TEXT), timeout=PATIENCE_S)
+
+    def process_cpu_s(self):
+        """What the process has computed so far, in seconds of one core."""
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")")[-1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def stop(self, signal_number=signal.SIGTERM):
         """Sends the signal; what the process returns."""

@@ -1,6 +1,10 @@
 """Another language against the real server: scenes, frames, rays, refusals, health, reflection."""
 
 import math
+import struct
+import tempfile
+import threading
+import time
 import unittest
 
 import grpc
@@ -13,6 +17,7 @@ CLASSICAL = service_pb2.RenderOptions(mode=service_pb2.CLASSICAL)
 # Radiance crosses as float in a frame and as double in a batch: half a unit in the last place of
 # 24 bits, with room for a factor of two.
 FLOAT_ROUNDING = 2.0**-23
+SERVING = b"\x08\x01"  # HealthCheckResponse { status: SERVING }
 
 
 def assemble(chunks):
@@ -124,6 +129,44 @@ class Service(unittest.TestCase):
                              end.stats.listed_shadow_rays - end.stats.listed_branch_rays)
         self.assertGreater(end.stats.listed_shadow_rays, 0)
 
+    def test_scenes_from_the_servers_folder(self):
+        folder = served.PROJECT / "scenes"
+        def load(server, **fields):
+            return server.stub.LoadScene(service_pb2.LoadSceneRequest(name="file", **fields),
+                                         timeout=PATIENCE_S)
+        with refused(self, grpc.StatusCode.PERMISSION_DENIED, "file:"):
+            load(self.server, file="gap.textproto")
+        with served.Served("--scene-root", str(folder)) as server:
+            info = load(server, file="gap.textproto")
+            gap = self.stub.DescribeScene(service_pb2.DescribeSceneRequest(scene="gap"))
+            self.assertEqual(info.scene_version, gap.scene_version)
+            with refused(self, grpc.StatusCode.PERMISSION_DENIED, "file:"):
+                load(server, file="../README.md")
+            with refused(self, grpc.StatusCode.NOT_FOUND, "file:"):
+                load(server, file="gone.nff")
+
+    def test_a_server_is_ready_when_its_scenes_are_warm(self):
+        path = self.enterContext(tempfile.NamedTemporaryFile("w"))
+        path.write("frames: 12 keyframes { camera { eye { y: 1.6 z: 2.7 } look_at { y: 1.1 } } }")
+        path.flush()
+        with served.Served("--scene", f"room={served.PROJECT / 'scenes' / 'room.textproto'}",
+                           "--warm-up", f"room={path.name}",
+                           "--scene-weight", "room=3") as server:
+            def is_ready():
+                return server.call_raw("/grpc.health.v1.Health/Check", b"") == SERVING
+            def room():
+                return server.stub.DescribeScene(service_pb2.DescribeSceneRequest(scene="room"),
+                                                 timeout=PATIENCE_S)
+            self.assertFalse(is_ready())
+            self.assertGreater(room().warm_up_frames_left, 0)
+            self.assertEqual(len(list(server.stub.RenderFrame(
+                small_frame(scene="room"), timeout=PATIENCE_S))), 2, "served all the same")
+            while not is_ready():
+                time.sleep(0.05)
+            self.assertEqual(room().warm_up_frames_left, 0)
+            server.load_ball()
+            self.assertEqual(room().memory_budget_bytes, 3 << 28)
+
     def test_the_server_has_a_default_judge(self):
         with served.Served("--judge", "paper") as server:
             server.load_ball()
@@ -148,6 +191,52 @@ class Service(unittest.TestCase):
             pixels, end = assemble(chunks)
             self.assertEqual(len(pixels), 48 * 32)
             self.assertEqual(end.camera.eye.x, i)
+
+    def test_a_frame_in_every_codec(self):
+        floats, _ = self.frame(options=CLASSICAL)
+        halves = {}
+        files = {}
+        codecs = {service_pb2.CODEC_HALF: b"", service_pb2.CODEC_EXR: b"v/1\x01",
+                  service_pb2.CODEC_PNG: b"\x89PNG\r\n", service_pb2.CODEC_JPEG: b"\xff\xd8\xff"}
+        for codec, magic in codecs.items():
+            frame = small_frame(options=CLASSICAL, codec=codec)
+            for chunk in self.stub.RenderFrame(frame, timeout=PATIENCE_S):
+                self.assertLessEqual(chunk.ByteSize(), 256 * 1024)
+                if chunk.HasField("file"):
+                    file = files.setdefault(codec, b"")
+                    self.assertEqual(chunk.file.offset, len(file))
+                    files[codec] = file + chunk.file.data
+                    self.assertTrue(files[codec].startswith(magic))
+                    self.assertGreaterEqual(chunk.file.file_bytes, len(files[codec]))
+                elif chunk.HasField("tile"):
+                    tile = chunk.tile
+                    values = struct.unpack(f"<{3 * tile.width * tile.height}e", tile.radiance_half)
+                    for i in range(tile.width * tile.height):
+                        at = tile.x + i % tile.width, tile.y + i // tile.width
+                        halves[at] = values[3 * i:3 * i + 3]
+        self.assertEqual(len(files), 3)
+        self.assertEqual(set(halves), set(floats))
+        for at, pixel in floats.items():
+            for a, b in zip(pixel, halves[at]):
+                self.assertLessEqual(abs(a - b), max(2**-11 * a, 2**-25))
+
+    def test_a_client_that_steers_gets_its_newest_viewpoint(self):
+        sent = []
+        seen = threading.Event()
+
+        def viewpoints():
+            while not seen.is_set():
+                sent.append(len(sent))
+                yield service_pb2.FlyRequest(sequence=sent[-1], frame=small_frame(),
+                                             pacing=service_pb2.PACING_NEWEST)
+        ends = []
+        for reply in self.stub.Fly(viewpoints(), timeout=PATIENCE_S):
+            if reply.chunk.HasField("end"):
+                ends.append(reply)
+                if reply.skipped:
+                    seen.set()
+        self.assertEqual(len(ends) + sum(end.skipped for end in ends), len(sent))
+        self.assertEqual(ends[-1].sequence, sent[-1])
 
     def test_refusals_name_the_field(self):
         nan = float("nan")
@@ -179,12 +268,11 @@ class Service(unittest.TestCase):
                 self.server.call_raw(f"/{SERVICE}/{method}", whole[:-1])
 
     def test_health_is_served(self):
-        serving = b"\x08\x01"  # HealthCheckResponse { status: SERVING }
         for service in ["", SERVICE]:
             name = service.encode()
             request = bytes([0x0A, len(name)]) + name if name else b""
             self.assertEqual(self.server.call_raw("/grpc.health.v1.Health/Check", request),
-                             serving)
+                             SERVING)
 
     def test_reflection_lists_the_service(self):
         list_services = b"\x3a\x00"  # ServerReflectionRequest { list_services: "" }
