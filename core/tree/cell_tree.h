@@ -95,8 +95,8 @@ class CellTree {
     uint64_t bytes = 0;
   };
   // What a cell knows is dropped where `touches` (const Node&, not asked without payload), and then
-  // blocks of leaves of which nothing is known any more. With `covers`, what touches no cell touches
-  // none in it.
+  // blocks of leaves of which nothing is known any more. With `covers`, what touches no cell
+  // touches none in it.
   template <class Fn>
   Pruned Prune(bool covers, Fn&& touches) {
     Pruned pruned;

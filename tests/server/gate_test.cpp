@@ -62,7 +62,7 @@ TEST_F(GateTest, EveryMethodAsksForATokenAndKnowsItsRole) {
     EXPECT_NE(admins.error_code(), StatusCode::PERMISSION_DENIED) << method;
     EXPECT_NE(admins.error_code(), StatusCode::UNIMPLEMENTED) << method;
   }
-  EXPECT_THAT(for_admins, ElementsAre("LoadScene", "UnloadScene"));
+  EXPECT_THAT(for_admins, ElementsAre("LoadScene", "UnloadScene", "UpdateScene"));
 }
 
 TEST_F(GateTest, StreamsAreRefusedToo) {

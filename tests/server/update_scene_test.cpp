@@ -1,4 +1,5 @@
 // Editing a scene that is being served.
+#include <atomic>
 #include <thread>
 
 #include "tests/server/running_server.h"
@@ -113,16 +114,19 @@ TEST(UpdateSceneTest, FramesDuringEditsAreThoseOfTheVersionThatTheyName) {
     ASSERT_TRUE(Update(running, Request(kMoveBall)).status.ok());
   }
   ASSERT_TRUE(running.client().LoadScene("ball", test::BallScene(), true).ok());
+  std::atomic<bool> edited{false};
   std::thread editor([&] {
-    for (int step = 0; step < 5; ++step) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    for (int step = 0; step < 5; ++step)
       EXPECT_TRUE(Update(running, Request(kMoveBall)).status.ok());
-    }
+    edited = true;
   });
-  for (int i = 0; i < 12; ++i) {
+  for (int after = 0; after < 2; after += edited ? 1 : 0) {
     const Frame frame = Rendered(running.client(), "ball", Mode::kCached);
     const auto version = classical.find(frame.scene_version);
-    ASSERT_NE(version, classical.end());
+    if (version == classical.end()) {
+      ADD_FAILURE() << "a frame of the unknown version " << frame.scene_version;
+      break;
+    }
     EXPECT_EQ(frame.radiance, version->second.radiance);
   }
   editor.join();
