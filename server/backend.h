@@ -20,6 +20,7 @@
 #include "server/job_queue.h"
 #include "server/options.h"
 #include "server/scene_store.h"
+#include "server/stall_watch.h"
 #include "server/warm_ups.h"
 
 namespace linetree {
@@ -65,6 +66,8 @@ class Backend {
   JobQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
+  // Watches what is being sent.
+  StallWatch& sends() { return sends_; }
   const SceneStore& scenes() const { return scenes_; }
   LiveAudit& audit() { return audit_; }
   // "No room now" with a hint when to come back.
@@ -83,6 +86,7 @@ class Backend {
   WorkerPool pool_;
   Budget frame_bytes_;
   Budget flights_;
+  StallWatch sends_;
   LiveAudit audit_;
   // Last: their threads use all of the above.
   WarmUps warm_ups_{renders_, pool_};

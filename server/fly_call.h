@@ -73,6 +73,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   bool read_all_ = false;
   bool working_ = false;  // a frame waits, or is being rendered or sent; or the farewell is sent
   bool has_sent_ = false;
+  StallWatch::Id send_ = 0;               // that is under way
   bool gone_ = false;                     // the client
   std::optional<absl::Status> farewell_;  // why the server ends the flight
   bool ended_ = false;

@@ -58,10 +58,12 @@ void FrameCall::SendNext() {
   }
   if (chunk.has_end()) chunk.mutable_end()->set_request_id(info_.request_id);
   sending_ = Serialize(chunk);
+  send_ = backend_.sends().Begin([this] { context_->TryCancel(); });
   StartWrite(&sending_);
 }
 
 void FrameCall::OnWriteDone(bool ok) {
+  backend_.sends().End(send_);
   if (ok) return SendNext();
   End(absl::CancelledError("the client is gone"));
 }

@@ -40,6 +40,7 @@ class FrameCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   grpc::CallbackServerContext* const context_;
   const CallInfo info_;
   JobId job_ = 0;
+  StallWatch::Id send_ = 0;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
   grpc::ByteBuffer sending_;

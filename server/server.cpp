@@ -1,5 +1,6 @@
 #include "server/server.h"
 
+#include <grpc/grpc.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
@@ -14,6 +15,13 @@ namespace {
 constexpr int kKeepaliveTime_ms = 30'000;
 constexpr int kKeepaliveTimeout_ms = 10'000;
 
+// gRPC takes itself down with the last of its objects, and may then wait ten seconds for a poll of
+// its own; so it stays up until the process ends.
+void KeepGrpcUp() {
+  static const int once = (grpc_init(), 0);
+  static_cast<void>(once);
+}
+
 std::string WithPort(const std::string& listen, int port) {
   if (absl::StartsWith(listen, "unix:")) return listen;
   return absl::StrCat(listen.substr(0, listen.rfind(':')), ":", port);
@@ -24,6 +32,7 @@ std::string WithPort(const std::string& listen, int port) {
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options,
                                                       std::shared_ptr<spdlog::logger> log) {
   if (auto status = ValidateServerOptions(options); !status.ok()) return status;
+  KeepGrpcUp();
   std::unique_ptr<Server> server(new Server(options, log));
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
   if (auto status = server->Listen(options); !status.ok()) return status;
