@@ -18,6 +18,7 @@
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
 #include "server/job_queue.h"
+#include "server/open_calls.h"
 #include "server/options.h"
 #include "server/scene_store.h"
 #include "server/stall_watch.h"
@@ -61,6 +62,9 @@ class Backend {
                                              absl::string_view path);
   absl::StatusOr<Frame> Render(const PreparedFrame& frame, const CancelToken& cancel);
 
+  OpenCalls& open_calls() { return open_calls_; }
+  // What calls are told that come after these are closed.
+  static absl::Status Stopping() { return absl::UnavailableError("the server is stopping"); }
   // Where renders and loads run; both are done when the Backend dies.
   JobQueue& renders() { return renders_; }
   JobQueue& loads() { return loads_; }
@@ -86,6 +90,7 @@ class Backend {
   WorkerPool pool_;
   Budget frame_bytes_;
   Budget flights_;
+  OpenCalls open_calls_;
   StallWatch sends_;
   LiveAudit audit_;
   // Last: their threads use all of the above.

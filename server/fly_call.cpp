@@ -181,7 +181,7 @@ void FlyCall::EndSoon(const absl::Status& why) {
 
 void FlyCall::Drain() {
   const std::lock_guard lock(mutex_);
-  EndSoon(absl::UnavailableError("the server is stopping"));
+  EndSoon(Backend::Stopping());
 }
 
 void FlyCall::End(const absl::Status& status) {

@@ -62,6 +62,8 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
   const CallInfo info_;
+  // Flights is what ends those that come late.
+  const std::optional<OpenCalls::Share> open_ = backend_.open_calls().Enter();
 
   std::mutex mutex_;
   // Guarded by mutex_, but for what belongs to the frame that is being rendered.

@@ -18,6 +18,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameCall::Start(Backend& backend,
 }
 
 absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
+  if (!open_) return Backend::Stopping();
   v1::RenderFrameRequest message;
   auto status = Parse(request, backend_.limits().max_request_bytes, &message);
   if (!status.ok()) return status;

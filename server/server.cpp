@@ -5,6 +5,9 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
 
+#include <algorithm>
+#include <thread>
+
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 
@@ -21,6 +24,10 @@ void KeepGrpcUp() {
   static const int once = (grpc_init(), 0);
   static_cast<void>(once);
 }
+
+// Closing a connection on which something has come that gRPC has not read yet, as clients that read
+// send all the time, takes back what they have not read yet. So much time they get for it.
+constexpr std::chrono::milliseconds kLastReplies_ms{100};
 
 std::string WithPort(const std::string& listen, int port) {
   if (absl::StartsWith(listen, "unix:")) return listen;
@@ -81,7 +88,13 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   backend_.StopWarmUps();
   SetReady(false);
   service_.Drain();
-  grpc_->Shutdown(std::chrono::system_clock::now() + timeout_ms);
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + timeout_ms;
+  if (backend_.open_calls().Close(deadline) > 0) {
+    std::this_thread::sleep_until(std::min(deadline, steady_clock::now() + kLastReplies_ms));
+  }
+  const auto left = std::max(deadline - steady_clock::now(), steady_clock::duration::zero());
+  grpc_->Shutdown(std::chrono::system_clock::now() + left);
   grpc_.reset();
 }
 
