@@ -35,6 +35,7 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
       pool_(options.threads),
       frame_bytes_(options.limits.max_frame_bytes),
       flights_(options.limits.max_flights),
+      sends_(options.max_stall_s),
       audit_({.share = options.audit_share, .max_waiting = options.limits.max_waiting_audits},
              [log = log_](const Violation& violation) {
                log->error("audit: an answer breaks its promise: {}", ToLine(violation));

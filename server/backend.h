@@ -19,8 +19,10 @@
 #include "server/budget.h"
 #include "server/job_queue.h"
 #include "server/metrics.h"
+#include "server/open_calls.h"
 #include "server/options.h"
 #include "server/scene_store.h"
+#include "server/stall_watch.h"
 #include "server/warm_ups.h"
 
 namespace linetree {
@@ -62,11 +64,16 @@ class Backend {
                                              absl::string_view path);
   absl::StatusOr<Frame> Render(const PreparedFrame& frame, const CancelToken& cancel);
 
+  OpenCalls& open_calls() { return open_calls_; }
+  // What calls are told that come after these are closed.
+  static absl::Status Stopping() { return absl::UnavailableError("the server is stopping"); }
   // Where renders and loads run; both are done when the Backend dies.
   JobQueue& renders() { return renders_; }
   JobQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
+  // Watches what is being sent.
+  StallWatch& sends() { return sends_; }
   SceneStore& scenes() { return scenes_; }
   LiveAudit& audit() { return audit_; }
   Load CurrentLoad() const;
@@ -86,6 +93,8 @@ class Backend {
   WorkerPool pool_;
   Budget frame_bytes_;
   Budget flights_;
+  OpenCalls open_calls_;
+  StallWatch sends_;
   LiveAudit audit_;
   // Last: their threads use all of the above.
   WarmUps warm_ups_{renders_, pool_};

@@ -81,7 +81,8 @@ grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* requ
     });
   };
   const JobInfo job{.session = info.session, .deadline = info.deadline};
-  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
+  return QueuedCall::Start(backend_.open_calls(), backend_.loads(), job, info, context, reply,
+                           work);
 }
 
 grpc::ServerUnaryReactor* Service::ListScenes(Context* context, const Bytes* request,
@@ -135,7 +136,8 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
                     .session = info.session,
                     .work_rays = std::max<uint64_t>(*rays, 1),
                     .deadline = info.deadline};
-  return QueuedCall::Start(backend_.renders(), job, info, context, reply, work);
+  return QueuedCall::Start(backend_.open_calls(), backend_.renders(), job, info, context, reply,
+                           work);
 }
 
 grpc::ServerUnaryReactor* Service::GetStats(Context* context, const Bytes* request, Bytes* reply) {
