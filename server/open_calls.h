@@ -3,6 +3,7 @@
 // Thread safety: all methods may be called from any thread. Must outlive its shares.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -40,13 +41,15 @@ class OpenCalls {
     return Share(this);
   }
 
-  // Returns when no call is open any more, or at the deadline. How many were.
-  size_t Close(std::chrono::steady_clock::time_point deadline) {
+  // Returns when no call is open any more, or at the deadline. If any was, the last one's client
+  // gets `grace` more to read what was sent, of which nobody tells us.
+  void Close(std::chrono::steady_clock::time_point deadline, std::chrono::milliseconds grace) {
     std::unique_lock lock(mutex_);
     closed_ = true;
-    const size_t were_open = open_;
+    if (open_ == 0) return;
     none_open_.wait_until(lock, deadline, [this] { return open_ == 0; });
-    return were_open;
+    const auto end = std::min(deadline, std::chrono::steady_clock::now() + grace);
+    none_open_.wait_until(lock, end, [] { return false; });
   }
 
  private:

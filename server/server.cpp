@@ -6,7 +6,6 @@
 #include <grpcpp/server_builder.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -90,9 +89,7 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   service_.Drain();
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + timeout_ms;
-  if (backend_.open_calls().Close(deadline) > 0) {
-    std::this_thread::sleep_until(std::min(deadline, steady_clock::now() + kLastReplies_ms));
-  }
+  backend_.open_calls().Close(deadline, kLastReplies_ms);
   const auto left = std::max(deadline - steady_clock::now(), steady_clock::duration::zero());
   grpc_->Shutdown(std::chrono::system_clock::now() + left);
   grpc_.reset();
