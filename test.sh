@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs all tests: everything in Release, everything but the
-# long picture comparisons again under address and undefined-behaviour sanitizers, and the core
-# again under the thread sanitizer. Ends with one line as ctest writes it; the status is 0 only
-# when everything was built and every test passed.
+# long picture comparisons again under address and undefined-behaviour sanitizers, and what of the
+# core runs on several threads again under the thread sanitizer. Ends with one line as ctest writes
+# it; the status is 0 only when everything was built and every test passed.
 set -uo pipefail
 cd "$(dirname "$0")" || exit 1
 

@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/library/status.h"
 #include "core/io/camera_path.h"
-#include "core/io/load_scene.h"
+#include "core/io/scene_edit.h"
 #include "core/io/wire.h"
 #include "core/io/wire_frame.h"
 #include "server/limit_list.h"
@@ -16,12 +16,10 @@
 namespace linetree {
 namespace {
 
-absl::StatusOr<std::shared_ptr<const Scene>> BuildFromText(const std::string& text,
-                                                           const std::string& name, bool is_nff,
-                                                           const SceneLimits& limits) {
-  auto source = is_nff ? ParseNff(text, name, limits) : ParseSceneText(text, name, limits);
-  if (!source.ok()) return source.status();
-  return BuildScene(**source, limits);
+absl::StatusOr<std::unique_ptr<SceneSource>> ParseText(const std::string& text,
+                                                       const std::string& name, bool is_nff,
+                                                       const SceneLimits& limits) {
+  return is_nff ? ParseNff(text, name, limits) : ParseSceneText(text, name, limits);
 }
 
 }  // namespace
@@ -45,18 +43,28 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
                Busy("render slot")),
       loads_(1, {.max_waiting = options.limits.max_waiting_loads}, Busy("loader")) {}
 
+absl::StatusOr<NamedHost> Backend::Keep(const std::string& name, const SceneSource& source,
+                                        bool replace, std::optional<double> weight) {
+  auto scene = BuildScene(source, options_.limits.scene);
+  if (!scene.ok()) return scene.status();
+  return scenes_.Add(name, *std::move(scene), replace,
+                     std::make_shared<const std::string>(source.message().SerializeAsString()),
+                     weight);
+}
+
 absl::Status Backend::LoadSceneFiles() {
   for (const SceneFile& file : options_.scenes) {
-    auto scene = LoadSceneFile(file.path, options_.limits.scene);
-    if (!scene.ok()) return scene.status();
-    double weight = 1;
+    std::optional<double> weight;
     for (const SceneWeight& of : options_.scene_weights) {
       if (of.name == file.name) weight = of.weight;
     }
-    auto added = scenes_.Add(file.name, *scene, /*replace=*/false, weight);
+    auto source = ReadSceneFile(file.path, options_.limits.scene);
+    if (!source.ok()) return source.status();
+    auto added = Keep(file.name, **source, /*replace=*/false, weight);
     if (!added.ok()) return added.status();
+    const Scene& scene = added->host->scene();
     log_->info("scene {} from {}: {} objects, version {}", file.name, file.path,
-               (*scene)->objects.size(), (*scene)->version);
+               scene.objects.size(), scene.version);
   }
   return absl::OkStatus();
 }
@@ -116,15 +124,14 @@ absl::StatusOr<std::vector<FrameRequest>> Backend::WarmUpFrames(const v1::WarmUp
   return frames;
 }
 
-absl::StatusOr<std::shared_ptr<const Scene>> Backend::BuildFrom(
-    v1::LoadSceneRequest request) const {
+absl::StatusOr<std::unique_ptr<SceneSource>> Backend::SourceOf(v1::LoadSceneRequest request) const {
   const SceneLimits& limits = options_.limits.scene;
   switch (request.content_case()) {
     case v1::LoadSceneRequest::kScene:
-      return BuildScene(*SceneFromMessage(std::move(*request.mutable_scene())), limits);
+      return SceneFromMessage(std::move(*request.mutable_scene()));
     case v1::LoadSceneRequest::kText:
-      return BuildFromText(request.text(), request.name(),
-                           request.format() == v1::LoadSceneRequest::NFF, limits);
+      return ParseText(request.text(), request.name(),
+                       request.format() == v1::LoadSceneRequest::NFF, limits);
     case v1::LoadSceneRequest::kFile: {
       if (options_.scene_root.empty()) {
         return absl::PermissionDeniedError(
@@ -133,8 +140,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Backend::BuildFrom(
       const auto text =
           ReadFileBelow(options_.scene_root, request.file(), limits.max_file_bytes, "file");
       if (!text.ok()) return text.status();
-      return BuildFromText(*text, request.file(), absl::EndsWithIgnoreCase(request.file(), ".nff"),
-                           limits);
+      return ParseText(*text, request.file(), absl::EndsWithIgnoreCase(request.file(), ".nff"),
+                       limits);
     }
     case v1::LoadSceneRequest::CONTENT_NOT_SET:
       break;
@@ -163,9 +170,9 @@ absl::StatusOr<v1::SceneInfo> Backend::LoadScene(v1::LoadSceneRequest request) {
   }
   const std::string name = request.name();
   const bool replace = request.replace();
-  auto scene = BuildFrom(std::move(request));
-  if (!scene.ok()) return scene.status();
-  auto added = scenes_.Add(name, *std::move(scene), replace, weight);
+  auto source = SourceOf(std::move(request));
+  if (!source.ok()) return source.status();
+  auto added = Keep(name, **source, replace, weight);
   if (!added.ok()) return added.status();
   const Scene& loaded = added->host->scene();
   log_->info("scene {} loaded: {} objects, version {}", name, loaded.objects.size(),
@@ -179,6 +186,36 @@ v1::SceneInfo Backend::InfoOf(const NamedHost& scene) const {
   info.set_memory_budget_bytes(scene.memory_bytes);
   info.set_warm_up_frames_left(warm_ups_.FramesLeft(scene.name));
   return info;
+}
+
+absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneRequest& request) {
+  auto former = scenes_.Find(request.scene(), "scene");
+  if (!former.ok()) return former.status();
+  const SceneVersion& version = former->host->scene().version;
+  if (!request.expected_version().empty() && request.expected_version() != version) {
+    return absl::FailedPreconditionError(absl::StrCat("expected_version: the scene has version ",
+                                                      version, ", not ",
+                                                      Quoted(request.expected_version())));
+  }
+  v1::Scene message;
+  if (!message.ParseFromString(*former->content)) {
+    return absl::InternalError("the scene's message cannot be read back");
+  }
+  if (auto status = ApplyEdits(request.edits(), message); !status.ok()) return status;
+  auto added = Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true);
+  if (!added.ok()) return added.status();
+  SceneHost& host = *added->host;
+  v1::UpdateSceneReply reply;
+  *reply.mutable_info() = InfoOf(*added);
+  if (&host != former->host.get()) {
+    reply.set_cells_kept(added->adopted.kept);
+    reply.set_cells_dropped(added->adopted.dropped);
+    reply.set_find_ms(added->adopt_ms);
+  }
+  log_->info("scene {} edited: {} objects, version {}, {} cells kept, {} dropped", added->name,
+             host.scene().objects.size(), host.scene().version, reply.cells_kept(),
+             reply.cells_dropped());
+  return reply;
 }
 
 v1::ListScenesReply Backend::ListScenes() const {

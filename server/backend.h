@@ -14,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "core/audit/live_audit.h"
 #include "core/io/frame_codec.h"
+#include "core/io/load_scene.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
@@ -47,6 +48,8 @@ class Backend {
   v1::ListScenesReply ListScenes() const;
   absl::StatusOr<v1::SceneInfo> DescribeScene(const v1::DescribeSceneRequest& request) const;
   absl::StatusOr<v1::UnloadSceneReply> UnloadScene(const v1::UnloadSceneRequest& request);
+  // Like LoadScene, one at a time: on loads().
+  absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
   v1::GetLimitsReply GetLimits() const;
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
@@ -81,7 +84,11 @@ class Backend {
   absl::Status Busy(absl::string_view what) const;
 
  private:
-  absl::StatusOr<std::shared_ptr<const Scene>> BuildFrom(v1::LoadSceneRequest request) const;
+  // The scene of a request, not validated.
+  absl::StatusOr<std::unique_ptr<SceneSource>> SourceOf(v1::LoadSceneRequest request) const;
+  // Builds the scene and keeps it.
+  absl::StatusOr<NamedHost> Keep(const std::string& name, const SceneSource& source, bool replace,
+                                 std::optional<double> weight = std::nullopt);
   absl::StatusOr<std::vector<FrameRequest>> WarmUpFrames(const v1::WarmUp& warm_up) const;
   v1::SceneInfo InfoOf(const NamedHost& scene) const;
   static v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene);

@@ -86,6 +86,12 @@ grpc::ServerUnaryReactor* Gate::UnloadScene(Context* context, const Bytes* reque
   });
 }
 
+grpc::ServerUnaryReactor* Gate::UpdateScene(Context* context, const Bytes* request, Bytes* reply) {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kAdmin, "UpdateScene", [&] {
+    return service_.UpdateScene(context, request, reply);
+  });
+}
+
 grpc::ServerWriteReactor<grpc::ByteBuffer>* Gate::RenderFrame(Context* context,
                                                               const Bytes* request) {
   return Pass<grpc::ServerWriteReactor<Bytes>>(context, Role::kViewer, "RenderFrame", [&] {

@@ -34,6 +34,8 @@ class Gate final : public RawService {
                                           Bytes* reply) override;
   grpc::ServerUnaryReactor* UnloadScene(Context* context, const Bytes* request,
                                         Bytes* reply) override;
+  grpc::ServerUnaryReactor* UpdateScene(Context* context, const Bytes* request,
+                                        Bytes* reply) override;
   grpc::ServerWriteReactor<Bytes>* RenderFrame(Context* context, const Bytes* request) override;
   grpc::ServerBidiReactor<Bytes, Bytes>* Fly(Context* context) override;
   grpc::ServerUnaryReactor* TraceRays(Context* context, const Bytes* request,

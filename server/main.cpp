@@ -110,7 +110,7 @@ void AddSecurityFlags(CLI::App& app, ServerOptions& options) {
       ->type_name("FILE");
   app.add_option("--token-file", options.token_file,
                  "lines 'viewer TOKEN' and 'admin TOKEN': callers must show one of them; viewers "
-                 "may not load or unload scenes. Health and reflection answer anybody")
+                 "may not load, change or unload scenes. Health and reflection answer anybody")
       ->type_name("FILE");
   app.add_flag("--insecure", options.insecure, "let other machines in without TLS or token");
 }

@@ -27,6 +27,11 @@ struct NamedHost {
   std::shared_ptr<AnswerCounts> answers{};  // of this host's answers, too
   double weight = 1;                        // its caches' part of the budget, by the sum of all
   uint64_t memory_bytes = 0;                // that is, when this was looked up
+  // The scene's message, serialized, which edits start from.
+  std::shared_ptr<const std::string> content{};
+  // What the host took over from the one that it replaced.
+  Adopted adopted{};
+  double adopt_ms = 0;
 };
 
 inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
@@ -42,10 +47,13 @@ class SceneStore {
   explicit SceneStore(const Limits& limits) : limits_(limits) {}
 
   // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
-  // ALREADY_EXISTS unless `replace`. RESOURCE_EXHAUSTED when the store is full. Without a `weight`,
-  // which lies between the bounds above, the scene keeps that of the name, or gets 1.
+  // ALREADY_EXISTS unless `replace`: then it takes over what is known of all that is the same in
+  // both, and frames that are under way in the former scene go on without a cache.
+  // RESOURCE_EXHAUSTED when the store is full; all is then as it was. Without a `weight`, which
+  // lies between the bounds above, the scene keeps that of the name, or gets 1. One call at a time.
   absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
-                                bool replace, std::optional<double> weight = std::nullopt);
+                                bool replace, std::shared_ptr<const std::string> content = nullptr,
+                                std::optional<double> weight = std::nullopt);
 
   // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
   absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
@@ -63,7 +71,13 @@ class SceneStore {
  private:
   using Hosts = std::map<std::string, NamedHost>;
 
+  // What to replace (nothing: a null host), or why the scene cannot be added.
+  absl::StatusOr<NamedHost> CheckAdd(const std::string& name, const Scene& scene,
+                                     bool replace) const;
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
+  // Of this name's weight beside the weights of all other names.
+  uint64_t ShareOf(const NamedHost& scene) const;
+  uint64_t PartOf(double weight, double sum) const;
   void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 

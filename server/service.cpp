@@ -55,8 +55,9 @@ absl::StatusOr<uint64_t> CheckBatch(const grpc::ByteBuffer& bytes, const ServerL
   return rays;
 }
 
-absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const ServerLimits& limits) {
-  const uint64_t messages = CountMessages(bytes, v1::LoadSceneRequest());
+absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type,
+                           const ServerLimits& limits) {
+  const uint64_t messages = CountMessages(bytes, type);
   if (messages <= limits.max_scene_messages) return absl::OkStatus();
   return absl::ResourceExhaustedError(absl::StrCat("scene: expected at most ",
                                                    limits.max_scene_messages,
@@ -64,6 +65,13 @@ absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const ServerLimits& li
 }
 
 }  // namespace
+
+grpc::ServerUnaryReactor* Service::OnLoader(const CallInfo& info, Context* context, Bytes* reply,
+                                            QueuedCall::Work work) {
+  const JobInfo job{.session = info.session, .deadline = info.deadline};
+  return QueuedCall::Start(backend_.open_calls(), backend_.loads(), job, info, context, reply,
+                           std::move(work));
+}
 
 grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* request, Bytes* reply) {
   const CallInfo info = ReadCallInfo(context);
@@ -74,15 +82,13 @@ grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* requ
   const auto work = [this, request, max_bytes,
                      id = info.request_id](const CancelToken&) -> absl::StatusOr<Bytes> {
     const LogFields fields(LogFields::Fields{{"request_id", id}});
-    const auto counted = CheckMessages(*request, backend_.limits());
+    const auto counted = CheckMessages(*request, v1::LoadSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::LoadSceneRequest>(*request, max_bytes, [this](v1::LoadSceneRequest&& r) {
       return backend_.LoadScene(std::move(r));
     });
   };
-  const JobInfo job{.session = info.session, .deadline = info.deadline};
-  return QueuedCall::Start(backend_.open_calls(), backend_.loads(), job, info, context, reply,
-                           work);
+  return OnLoader(info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::ListScenes(Context* context, const Bytes* request,
@@ -101,12 +107,35 @@ grpc::ServerUnaryReactor* Service::DescribeScene(Context* context, const Bytes* 
       [this](const v1::DescribeSceneRequest& r) { return backend_.DescribeScene(r); });
 }
 
+// What changes the scenes is done one after the other.
 grpc::ServerUnaryReactor* Service::UnloadScene(Context* context, const Bytes* request,
                                                Bytes* reply) {
-  const LogFields fields(LogFields::Fields{{"request_id", ReadCallInfo(context).request_id}});
-  return AnswerNow<v1::UnloadSceneRequest>(
-      context, *request, backend_.limits().max_request_bytes, reply,
-      [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });
+  const CallInfo info = ReadCallInfo(context);
+  const auto work = [this, request, id = info.request_id](const CancelToken&) {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
+    return Handle<v1::UnloadSceneRequest>(
+        *request, backend_.limits().max_request_bytes,
+        [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });
+  };
+  return OnLoader(info, context, reply, work);
+}
+
+grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* request,
+                                               Bytes* reply) {
+  const CallInfo info = ReadCallInfo(context);
+  const size_t max_bytes = backend_.limits().max_scene_bytes;
+  const auto status = CheckSize(*request, max_bytes, v1::UpdateSceneRequest());
+  if (!status.ok()) return Finish(context, info, status);
+  const auto work = [this, request, max_bytes,
+                     id = info.request_id](const CancelToken&) -> absl::StatusOr<Bytes> {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
+    const auto counted = CheckMessages(*request, v1::UpdateSceneRequest(), backend_.limits());
+    if (!counted.ok()) return counted;
+    return Handle<v1::UpdateSceneRequest>(
+        *request, max_bytes,
+        [this](const v1::UpdateSceneRequest& r) { return backend_.UpdateScene(r); });
+  };
+  return OnLoader(info, context, reply, work);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* Service::RenderFrame(Context* context,

@@ -4,6 +4,7 @@
 #include "linetree/v1/service.grpc.pb.h"
 #include "server/backend.h"
 #include "server/fly_call.h"
+#include "server/queued_call.h"
 
 namespace linetree {
 
@@ -17,7 +18,8 @@ using RawService = v1::RadianceCache::WithRawCallbackMethod_LoadScene<
                         v1::RadianceCache::WithRawCallbackMethod_TraceRays<
                             v1::RadianceCache::WithRawCallbackMethod_GetStats<
                                 v1::RadianceCache::WithRawCallbackMethod_GetLimits<
-                                    v1::RadianceCache::Service>>>>>>>>>;
+                                    v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
+                                        v1::RadianceCache::Service>>>>>>>>>>;
 
 class Service final : public RawService {
  public:
@@ -36,6 +38,8 @@ class Service final : public RawService {
                                           Bytes* reply) override;
   grpc::ServerUnaryReactor* UnloadScene(Context* context, const Bytes* request,
                                         Bytes* reply) override;
+  grpc::ServerUnaryReactor* UpdateScene(Context* context, const Bytes* request,
+                                        Bytes* reply) override;
   grpc::ServerWriteReactor<Bytes>* RenderFrame(Context* context, const Bytes* request) override;
   grpc::ServerBidiReactor<Bytes, Bytes>* Fly(Context* context) override;
   grpc::ServerUnaryReactor* TraceRays(Context* context, const Bytes* request,
@@ -45,6 +49,10 @@ class Service final : public RawService {
                                       Bytes* reply) override;
 
  private:
+  // What changes scenes: one call after another.
+  grpc::ServerUnaryReactor* OnLoader(const CallInfo& info, Context* context, Bytes* reply,
+                                     QueuedCall::Work work);
+
   Backend& backend_;
   Flights flights_;
 };

@@ -9,6 +9,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   AddBenchAccuracy(*app, commands);
   AddBenchAudit(*app, commands);
   AddBenchCertify(*app, commands);
+  AddBenchEdit(*app, commands);
   AddBenchError(*app, commands);
   AddBenchPaper(*app, commands);
   AddBenchPeers(*app, commands);

@@ -40,6 +40,7 @@ void AddBench(CLI::App& parent, Commands& commands);
 void AddBenchAccuracy(CLI::App& bench, Commands& commands);
 void AddBenchAudit(CLI::App& bench, Commands& commands);
 void AddBenchCertify(CLI::App& bench, Commands& commands);
+void AddBenchEdit(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 void AddBenchPeers(CLI::App& bench, Commands& commands);

@@ -26,7 +26,11 @@ struct PathCache::Group {
 };
 
 PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
-    : tracer_(tracer), certifier_(tracer), max_depth_(max_depth), memory_bytes_(memory_bytes) {
+    : tracer_(tracer),
+      certifier_(tracer),
+      interiors_(tracer),
+      max_depth_(max_depth),
+      memory_bytes_(memory_bytes) {
   const Scene& scene = tracer.scene();
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     const Material& material = scene.MaterialOf(i);
@@ -262,6 +266,32 @@ void PathCache::Evict() {
     const uint64_t held = forest->store.byte_size();
     forest->store.Evict(held > excess ? held - excess : 0);
   }
+}
+
+Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
+  const SceneChange& change = reach.change();
+  std::scoped_lock refining(refine_mutex_, former.refine_mutex_);
+  Adopted adopted;
+  {
+    std::scoped_lock lock(mutex_, former.mutex_);
+    former.memory_bytes_ = 0;
+    clock_ = former.clock_;
+    for (const auto& forest : former.forests_) {
+      const uint64_t before = forest->store.cell_count();
+      Forest& own = OpenForest(forest->limits);
+      own.last_used = forest->last_used;
+      own.store.Adopt(forest->store, change, BudgetOf(own), [&](PathTree& tree) {
+        tree.cells().Prune(/*covers=*/false,
+                           [&](const PathNode& node) { return reach.Touches(tree, node); });
+      });
+      adopted.dropped += before;
+    }
+    former.forests_.clear();
+  }
+  Evict();
+  adopted.kept = CellCount();
+  adopted.dropped -= adopted.kept;
+  return adopted;
 }
 
 void PathCache::SetMemoryBytes(uint64_t memory_bytes) {

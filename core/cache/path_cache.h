@@ -14,10 +14,12 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/path_tree.h"
+#include "core/certify/solid_interiors.h"
 
 namespace linetree {
 
@@ -59,6 +61,9 @@ class PathCache {
     Reader(const PathCache& cache, const PathLimits& limits, std::vector<Sample>* samples);
 
     const PathStep* Find(const Hit& hit, const Vec3d& direction) const override;
+    const SolidInterior* Inside(int object) const override {
+      return cache_.interiors_.Find(object);
+    }
 
     // Radiance along a ray with this hit, if a cell around it may answer at epsilon: then
     // kCertified, else why not.
@@ -91,6 +96,9 @@ class PathCache {
   uint64_t Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
                   const ParallelLoop& loop);
 
+  // As SurfaceCache::Adopt.
+  Adopted Adopt(PathCache& former, const ChangeReach& reach);
+
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
@@ -119,6 +127,7 @@ class PathCache {
 
   const Tracer& tracer_;
   const PathCertifier certifier_;
+  const SolidInteriors interiors_;
   const int max_depth_;
   std::vector<bool> branches_;  // by object: whether it reflects or transmits
   std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it

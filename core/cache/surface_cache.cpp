@@ -156,6 +156,23 @@ SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop
   return {certified, is_limited ? thrift.most_work - left : 0};
 }
 
+Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
+  const SceneChange& change = reach.change();
+  std::scoped_lock refining(refine_mutex_, former.refine_mutex_);
+  std::scoped_lock lock(mutex_, former.mutex_);
+  const uint64_t before = former.store_.cell_count();
+  former.memory_bytes_ = 0;
+  clock_ = former.clock_;
+  if (change.lights) former.store_.Clear();
+  store_.Adopt(former.store_, change, memory_bytes_, [&](SurfaceTree& tree) {
+    tree.cells().Prune(/*covers=*/true,
+                       [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });
+  });
+  store_.Evict(EvictionTarget(memory_bytes_));
+  const uint64_t kept = store_.cell_count();
+  return {kept, before - kept};
+}
+
 void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {
   std::lock_guard refining(refine_mutex_);
   std::unique_lock lock(mutex_);

@@ -12,6 +12,7 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
 #include "core/certify/diffuse_summer.h"
@@ -79,6 +80,10 @@ class SurfaceCache {
   uint64_t Refine(double weight, const ParallelLoop& loop) {
     return Refine(weight, loop, {}).cells;
   }
+
+  // Takes over what the cache of a former scene knows and the change has not touched; that one is
+  // empty afterwards, and stays so. Before anybody asks this one.
+  Adopted Adopt(SurfaceCache& former, const ChangeReach& reach);
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;

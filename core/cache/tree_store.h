@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "core/scene/scene_change.h"
 
 namespace linetree {
 
@@ -97,6 +99,29 @@ class TreeStore {
     }
   }
 
+  // Takes the trees of a former scene's store over, for the objects that are still there and not
+  // altered, without the cells that prune(Tree&) takes from them. The former store is
+  // empty afterwards, this one was before. The budget is the caller's affair. Renumber(now,
+  // Payload&) -> false where what it names is gone.
+  template <class Fn>
+  void Adopt(TreeStore& former, const SceneChange& change, uint64_t memory_bytes, Fn&& prune) {
+    MakeIndex(memory_bytes);
+    for (size_t object = 0; object < former.trees_.size() && !trees_.empty(); ++object) {
+      const int32_t now = change.now[object];
+      if (!former.trees_[object] || now == SceneChange::kGone || change.altered[object]) continue;
+      auto tree = std::make_unique<Tree>(scene_.objects[static_cast<size_t>(now)]);
+      tree->cells() = std::move(former.trees_[object]->cells());
+      prune(*tree);
+      tree->cells().ForEach([&](Node& node) {
+        if (!change.keeps_indices) RenumberPayload(change.now, node);
+        cells_ += node.payload ? 1 : 0;
+      });
+      trees_[static_cast<size_t>(now)] = std::move(tree);
+    }
+    former.Clear();
+    byte_size_ = CountBytes();
+  }
+
   void Clear() {
     trees_ = std::vector<std::unique_ptr<Tree>>();
     wanted_ = std::vector<std::atomic<bool>>();
@@ -156,6 +181,11 @@ class TreeStore {
       });
     });
     return parents;
+  }
+  static void RenumberPayload(std::span<const int32_t> now, Node& node) {
+    using Payload = std::remove_const_t<typename decltype(node.payload)::element_type>;
+    // Nobody else holds it: it may change before anybody sees it again.
+    if (node.payload && !Renumber(now, const_cast<Payload&>(*node.payload))) node.payload.reset();
   }
   // Of trees without children, those used longest ago first.
   void DropTrees(uint64_t target) {

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "core/tree/light_certifier.h"
@@ -182,6 +183,19 @@ class FramePlan {
     ++decisions_;
     return booked;
   }
+  // Takes over what a former scene's planner knew of the objects that are still there: `now` by
+  // object there, negative for those that are not. Before anybody asks.
+  void Inherit(const FramePlan& former, std::span<const int32_t> now) {
+    for (size_t object = 0; object < now.size(); ++object) {
+      if (now[object] < 0) continue;
+      accounts_[static_cast<size_t>(now[object])].Copy(former.accounts_[object]);
+    }
+    usual_ = former.usual_.load();
+    wants_any_ = former.wants_any_.load();
+    pays_any_ = former.pays_any_.load();
+    hopes_any_ = former.hopes_any_.load();
+  }
+
   // Whether some object's trees are worth growing; pay as they are; are worth growing, but do not
   // pay yet.
   bool WantsAny() const { return always_ || wants_any_; }
@@ -231,6 +245,15 @@ class FramePlan {
     std::atomic<uint32_t> points{0}, asked{0}, classical{0}, spent{0};
     std::atomic<float> saved{kUnseen};  // per point
     std::atomic<bool> pays{false};
+
+    void Copy(const Account& other) {
+      points = other.points.load();
+      asked = other.asked.load();
+      classical = other.classical.load();
+      spent = other.spent.load();
+      saved = other.saved.load();
+      pays = other.pays.load();
+    }
   };
   const bool always_;
   std::vector<Account> accounts_;  // by object

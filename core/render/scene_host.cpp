@@ -136,6 +136,18 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
       plan_(scene_->objects.size(), cache_options.always_ask) {}
 
+Adopted SceneHost::Adopt(SceneHost& former) {
+  const SceneChange change = ChangeBetween(former.scene(), scene());
+  const ChangeReach reach(scene(), change);
+  former.cache_.SetMemoryBytes(0);
+  plan_.Inherit(former.plan_, change.now);
+  Adopted all = surfaces_.Adopt(former.surfaces_, reach);
+  const Adopted paths = paths_.Adopt(former.paths_, reach);
+  all.kept += paths.kept;
+  all.dropped += paths.dropped;
+  return all;
+}
+
 void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
   const MemoryShares shares(memory_bytes);
   cache_.SetMemoryBytes(shares.radiance);

@@ -61,6 +61,10 @@ class PathTracer {
         return Answer(leg, tracer_.IntersectAmong(leg.step->candidates, leg.origin, leg.direction,
                                                   leg.start));
       }
+      if (const HitOf<S> far_side = FarSide(leg); far_side.IsHit()) {
+        ++counts_.listed_branches;
+        return Answer(leg, far_side);
+      }
     }
     ++counts_.intersect;
     return Answer(leg, tracer_.Intersect(leg.origin, leg.direction, leg.start));
@@ -108,6 +112,19 @@ class PathTracer {
       RecordCutOff(Branch::kTransmitted, hit, node);
     }
     return radiance;
+  }
+
+  // Where a ray that starts inside a solid leaves it, if it certainly meets nothing before: between
+  // two points of the solid's room it does not leave the room. Rounding may take either out of it,
+  // or let the ray miss the far side; what such rays meet is anywhere.
+  HitOf<S> FarSide(const Leg<S>& leg) const {
+    if (paths_ == nullptr || leg.start.side != Side::kInside) return {};
+    const SolidInterior* solid = paths_->Inside(leg.start.object);
+    if (solid == nullptr || !solid->room.Contains(leg.origin)) return {};
+    const HitOf<S> hit =
+        tracer_.IntersectAmong(solid->candidates, leg.origin, leg.direction, leg.start);
+    const bool leaves = hit.object == leg.start.object && solid->room.Contains(hit.point);
+    return leaves ? hit : HitOf<S>();
   }
 
   // The step whose rays end at this hit: the one that led here if it knows how to go on, or else

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "core/math/box3.h"
 #include "core/trace/hit.h"
 
 namespace linetree {
@@ -28,6 +30,14 @@ struct PathStep {
   }
 };
 
+// Where rays inside a transparent solid may be, and what they can meet there.
+struct SolidInterior {
+  Box3 room;  // the solid's bounds, with some clearance
+  // Ascending, the solid among them: nothing else has a crossing in the room, as the tracer
+  // computes it, with a ray that starts in the room.
+  std::vector<int32_t> candidates;
+};
+
 class PathLists {
  public:
   virtual ~PathLists() = default;
@@ -36,6 +46,12 @@ class PathLists {
   // What it and the steps after it say must hold for the classical tracer's own arithmetic: the
   // tracer's answer may not change by a bit. Valid while this object lives.
   virtual const PathStep* Find(const Hit& hit, const Vec3d& direction) const = 0;
+
+  // Null when nothing is known. Valid while this object lives.
+  virtual const SolidInterior* Inside(int object) const {
+    (void)object;
+    return nullptr;
+  }
 };
 
 }  // namespace linetree

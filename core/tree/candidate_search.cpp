@@ -25,6 +25,8 @@ const AffineFrame* FrameOf(const Shape& shape) {
   return nullptr;
 }
 
+}  // namespace
+
 double SurplusOf(const Object& object) {
   const double size = Length(object.bounds.Extent());
   const AffineFrame* frame = FrameOf(object.shape);
@@ -37,8 +39,6 @@ double SurplusOf(const Object& object) {
   }
   return 2 * deviation * size;
 }
-
-}  // namespace
 
 double ClearanceOf(const Box3& box) { return kClearance * (Length(box.Extent()) + Magnitude(box)); }
 

@@ -21,13 +21,16 @@ inline constexpr double kClearance = 0x1p-30;
 // kClearance for rays inside a box: its size and its distance from the world's origin count.
 double ClearanceOf(const Box3& box);
 
+// How far the surface of an object that rays meet may lie outside the one whose support (support.h)
+// is taken. World length.
+double SurplusOf(const Object& object);
+
 class CandidateSearch {
  public:
   // Keeps a reference to the tracer, which must outlive it.
   explicit CandidateSearch(const Tracer& tracer);
 
-  // How far the surface of an object that rays meet may lie outside the one whose support
-  // (support.h) is taken.
+  // SurplusOf the object.
   double Surplus(int object) const { return surplus_[static_cast<size_t>(object)]; }
 
   // may_meet(int object) -> bool. Both give what it keeps, ascending; one object more than

@@ -89,6 +89,16 @@ class CellTree {
     for (Node& root : roots_) Visit(root, visit);
   }
 
+  // What a cell knows is dropped where `touches` (const Node&, not asked without payload), and then
+  // blocks of leaves of which nothing is known any more. With `covers`, what touches no cell
+  // touches none in it. Returns how many it dropped.
+  template <class Fn>
+  uint64_t Prune(bool covers, Fn&& touches) {
+    uint64_t dropped = 0;
+    for (Node& root : roots_) Prune(root, covers, touches, dropped);
+    return dropped;
+  }
+
   // Recomputed from scratch.
   uint64_t CountBytes() const {
     uint64_t bytes = sizeof(CellTree) + roots_.capacity() * sizeof(Node);
@@ -102,6 +112,24 @@ class CellTree {
     visit(node);
     if (!node.children) return;
     for (Node& child : *node.children) Visit(child, visit);
+  }
+  template <class Fn>
+  static void Prune(Node& node, bool covers, Fn& touches, uint64_t& dropped) {
+    if (node.payload) {
+      if (touches(std::as_const(node))) {
+        node.payload.reset();
+        ++dropped;
+      } else if (covers) {
+        return;
+      }
+    }
+    if (!node.children) return;
+    bool is_bare = true;
+    for (Node& child : *node.children) {
+      Prune(child, covers, touches, dropped);
+      is_bare = is_bare && child.IsLeaf() && !child.payload;
+    }
+    if (is_bare) node.children.reset();
   }
   static uint64_t BytesOf(const Node& node) {
     uint64_t bytes = node.ByteSize();

@@ -61,6 +61,9 @@ void Handle(const v1::TraceRaysRequest& request) {
   Check(TheBackend().TraceRays(request, CancelToken()).status());
 }
 void Handle(const v1::GetStatsRequest& request) { Check(TheBackend().GetStats(request).status()); }
+void Handle(const v1::UpdateSceneRequest& request) {
+  if (request.scene() != "ball") Check(TheBackend().UpdateScene(request).status());
+}
 void Handle(const v1::GetLimitsRequest&) { TheBackend().GetLimits(); }
 
 // Reads a request in one of the two forms and hands it over. What stood before the first error is a
@@ -85,10 +88,11 @@ void Feed(bool is_text, const std::string& input) {
 }
 
 using Feeder = void (*)(bool is_text, const std::string& input);
-constexpr Feeder kFeeders[] = {
-    Feed<v1::LoadSceneRequest>,   Feed<v1::ListScenesRequest>,  Feed<v1::DescribeSceneRequest>,
-    Feed<v1::UnloadSceneRequest>, Feed<v1::RenderFrameRequest>, Feed<v1::FlyRequest>,
-    Feed<v1::TraceRaysRequest>,   Feed<v1::GetStatsRequest>,    Feed<v1::GetLimitsRequest>};
+constexpr Feeder kFeeders[] = {Feed<v1::LoadSceneRequest>,     Feed<v1::ListScenesRequest>,
+                               Feed<v1::DescribeSceneRequest>, Feed<v1::UnloadSceneRequest>,
+                               Feed<v1::RenderFrameRequest>,   Feed<v1::FlyRequest>,
+                               Feed<v1::TraceRaysRequest>,     Feed<v1::GetStatsRequest>,
+                               Feed<v1::GetLimitsRequest>,     Feed<v1::UpdateSceneRequest>};
 
 void LoadBallOnce() {
   static const bool loaded = [] {
@@ -126,6 +130,7 @@ const std::pair<char, const char*> kTexts[] = {
         rays { origin { x: 1 } direction { x: -1 y: 0.5 } } options { max_relative_error: 0 })"},
     {'7', R"(scene: "ball")"},
     {'8', ""},
+    {'9', R"(scene: "d")"},
 };
 
 }  // namespace
