@@ -16,9 +16,9 @@
 namespace linetree {
 namespace {
 
-absl::StatusOr<std::unique_ptr<SceneSource>> ParseScene(const std::string& text,
-                                                        const std::string& name, bool is_nff,
-                                                        const SceneLimits& limits) {
+absl::StatusOr<std::unique_ptr<SceneSource>> ParseText(const std::string& text,
+                                                       const std::string& name, bool is_nff,
+                                                       const SceneLimits& limits) {
   return is_nff ? ParseNff(text, name, limits) : ParseSceneText(text, name, limits);
 }
 
@@ -33,6 +33,7 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
       pool_(options.threads),
       frame_bytes_(options.limits.max_frame_bytes),
       flights_(options.limits.max_flights),
+      sends_(options.max_stall_s),
       audit_({.share = options.audit_share, .max_waiting = options.limits.max_waiting_audits},
              [log = log_](const Violation& violation) {
                log->error("audit: an answer breaks its promise: {}", ToLine(violation));
@@ -46,18 +47,19 @@ absl::StatusOr<NamedHost> Backend::Keep(const std::string& name, const SceneSour
                                         bool replace, std::optional<double> weight) {
   auto scene = BuildScene(source, options_.limits.scene);
   if (!scene.ok()) return scene.status();
-  return scenes_.Add(name, *std::move(scene), replace, weight,
-                     std::make_shared<const std::string>(source.message().SerializeAsString()));
+  return scenes_.Add(name, *std::move(scene), replace,
+                     std::make_shared<const std::string>(source.message().SerializeAsString()),
+                     weight);
 }
 
 absl::Status Backend::LoadSceneFiles() {
   for (const SceneFile& file : options_.scenes) {
-    auto source = ReadSceneFile(file.path, options_.limits.scene);
-    if (!source.ok()) return source.status();
-    double weight = 1;
+    std::optional<double> weight;
     for (const SceneWeight& of : options_.scene_weights) {
       if (of.name == file.name) weight = of.weight;
     }
+    auto source = ReadSceneFile(file.path, options_.limits.scene);
+    if (!source.ok()) return source.status();
     auto added = Keep(file.name, **source, /*replace=*/false, weight);
     if (!added.ok()) return added.status();
     const Scene& scene = added->host->scene();
@@ -128,8 +130,8 @@ absl::StatusOr<std::unique_ptr<SceneSource>> Backend::SourceOf(v1::LoadSceneRequ
     case v1::LoadSceneRequest::kScene:
       return SceneFromMessage(std::move(*request.mutable_scene()));
     case v1::LoadSceneRequest::kText:
-      return ParseScene(request.text(), request.name(),
-                        request.format() == v1::LoadSceneRequest::NFF, limits);
+      return ParseText(request.text(), request.name(),
+                       request.format() == v1::LoadSceneRequest::NFF, limits);
     case v1::LoadSceneRequest::kFile: {
       if (options_.scene_root.empty()) {
         return absl::PermissionDeniedError(
@@ -138,8 +140,8 @@ absl::StatusOr<std::unique_ptr<SceneSource>> Backend::SourceOf(v1::LoadSceneRequ
       const auto text =
           ReadFileBelow(options_.scene_root, request.file(), limits.max_file_bytes, "file");
       if (!text.ok()) return text.status();
-      return ParseScene(*text, request.file(), absl::EndsWithIgnoreCase(request.file(), ".nff"),
-                        limits);
+      return ParseText(*text, request.file(), absl::EndsWithIgnoreCase(request.file(), ".nff"),
+                       limits);
     }
     case v1::LoadSceneRequest::CONTENT_NOT_SET:
       break;
@@ -200,8 +202,7 @@ absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneR
     return absl::InternalError("the scene's message cannot be read back");
   }
   if (auto status = ApplyEdits(request.edits(), message); !status.ok()) return status;
-  auto added =
-      Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true, std::nullopt);
+  auto added = Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true);
   if (!added.ok()) return added.status();
   SceneHost& host = *added->host;
   v1::UpdateSceneReply reply;

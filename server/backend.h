@@ -20,8 +20,10 @@
 #include "server/budget.h"
 #include "server/job_queue.h"
 #include "server/metrics.h"
+#include "server/open_calls.h"
 #include "server/options.h"
 #include "server/scene_store.h"
+#include "server/stall_watch.h"
 #include "server/warm_ups.h"
 
 namespace linetree {
@@ -65,11 +67,16 @@ class Backend {
                                              absl::string_view path);
   absl::StatusOr<Frame> Render(const PreparedFrame& frame, const CancelToken& cancel);
 
+  OpenCalls& open_calls() { return open_calls_; }
+  // What calls are told that come after these are closed.
+  static absl::Status Stopping() { return absl::UnavailableError("the server is stopping"); }
   // Where renders and loads run; both are done when the Backend dies.
   JobQueue& renders() { return renders_; }
   JobQueue& loads() { return loads_; }
   // Places for flights.
   Budget& flights() { return flights_; }
+  // Watches what is being sent.
+  StallWatch& sends() { return sends_; }
   SceneStore& scenes() { return scenes_; }
   LiveAudit& audit() { return audit_; }
   Load CurrentLoad() const;
@@ -81,7 +88,7 @@ class Backend {
   absl::StatusOr<std::unique_ptr<SceneSource>> SourceOf(v1::LoadSceneRequest request) const;
   // Builds the scene and keeps it.
   absl::StatusOr<NamedHost> Keep(const std::string& name, const SceneSource& source, bool replace,
-                                 std::optional<double> weight);
+                                 std::optional<double> weight = std::nullopt);
   absl::StatusOr<std::vector<FrameRequest>> WarmUpFrames(const v1::WarmUp& warm_up) const;
   v1::SceneInfo InfoOf(const NamedHost& scene) const;
   static v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene);
@@ -93,6 +100,8 @@ class Backend {
   WorkerPool pool_;
   Budget frame_bytes_;
   Budget flights_;
+  OpenCalls open_calls_;
+  StallWatch sends_;
   LiveAudit audit_;
   // Last: their threads use all of the above.
   WarmUps warm_ups_{renders_, pool_};

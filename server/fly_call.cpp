@@ -145,6 +145,7 @@ void FlyCall::SendNext() {
 void FlyCall::Send(const v1::FlyReply& reply) {
   if (!std::exchange(has_sent_, true)) SendIdBack(info_, context_);
   sending_ = Serialize(reply);
+  send_ = backend_.sends().Begin([this] { context_->TryCancel(); });
   StartWrite(&sending_);
 }
 
@@ -158,6 +159,7 @@ void FlyCall::SayFarewell() {
 }
 
 void FlyCall::OnWriteDone(bool ok) {
+  backend_.sends().End(send_);
   const std::lock_guard lock(mutex_);
   if (!ok) return End(absl::CancelledError("the client is gone"));
   if (chunks_) return SendNext();
@@ -179,7 +181,7 @@ void FlyCall::EndSoon(const absl::Status& why) {
 
 void FlyCall::Drain() {
   const std::lock_guard lock(mutex_);
-  EndSoon(absl::UnavailableError("the server is stopping"));
+  EndSoon(Backend::Stopping());
 }
 
 void FlyCall::End(const absl::Status& status) {

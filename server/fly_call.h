@@ -62,6 +62,8 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
   const CallInfo info_;
+  // Flights is what ends those that come late.
+  const std::optional<OpenCalls::Share> open_ = backend_.open_calls().Enter();
 
   std::mutex mutex_;
   // Guarded by mutex_, but for what belongs to the frame that is being rendered.
@@ -73,6 +75,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   bool read_all_ = false;
   bool working_ = false;  // a frame waits, or is being rendered or sent; or the farewell is sent
   bool has_sent_ = false;
+  StallWatch::Id send_ = 0;               // that is under way
   bool gone_ = false;                     // the client
   std::optional<absl::Status> farewell_;  // why the server ends the flight
   bool ended_ = false;

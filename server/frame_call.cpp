@@ -18,6 +18,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameCall::Start(Backend& backend,
 }
 
 absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
+  if (!open_) return Backend::Stopping();
   v1::RenderFrameRequest message;
   auto status = Parse(request, backend_.limits().max_request_bytes, &message);
   if (!status.ok()) return status;
@@ -58,10 +59,12 @@ void FrameCall::SendNext() {
   }
   if (chunk.has_end()) chunk.mutable_end()->set_request_id(info_.request_id);
   sending_ = Serialize(chunk);
+  send_ = backend_.sends().Begin([this] { context_->TryCancel(); });
   StartWrite(&sending_);
 }
 
 void FrameCall::OnWriteDone(bool ok) {
+  backend_.sends().End(send_);
   if (ok) return SendNext();
   End(absl::CancelledError("the client is gone"));
 }

@@ -39,7 +39,9 @@ class FrameCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
   const CallInfo info_;
+  const std::optional<OpenCalls::Share> open_ = backend_.open_calls().Enter();
   JobId job_ = 0;
+  StallWatch::Id send_ = 0;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
   grpc::ByteBuffer sending_;

@@ -25,6 +25,7 @@ struct Flags {
   std::string lanes = "scalar";
   int64_t drain_timeout_ms = 0;
   int64_t max_flight_s = 0;
+  int64_t max_stall_s = 0;
 };
 
 void AddSceneFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
@@ -73,6 +74,11 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "how long a flight may last before the client has to go on in a new stream, with "
                  "the token that the last reply brings; 0: for ever")
       ->capture_default_str();
+  flags.max_stall_s = options.max_stall_s.count();
+  app.add_option("--max-stall-s", flags.max_stall_s,
+                 "how long a client may take nothing of a frame that is sent to it before the call "
+                 "is cancelled; 0: for ever")
+      ->capture_default_str();
 }
 
 void AddDefaultsFlags(CLI::App& app, RenderOptions& defaults, Flags& flags) {
@@ -104,7 +110,7 @@ void AddSecurityFlags(CLI::App& app, ServerOptions& options) {
       ->type_name("FILE");
   app.add_option("--token-file", options.token_file,
                  "lines 'viewer TOKEN' and 'admin TOKEN': callers must show one of them; viewers "
-                 "may not load or unload scenes. Health and reflection answer anybody")
+                 "may not load, change or unload scenes. Health and reflection answer anybody")
       ->type_name("FILE");
   app.add_flag("--insecure", options.insecure, "let other machines in without TLS or token");
 }
@@ -150,6 +156,7 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
   options.defaults.judge = flags.judge == "certified" ? JudgeKind::kCertified : JudgeKind::kPaper;
   options.defaults.lanes = flags.lanes == "simd" ? Lanes::kSimd : Lanes::kScalar;
   options.max_flight_s = std::chrono::seconds(flags.max_flight_s);
+  options.max_stall_s = std::chrono::seconds(flags.max_stall_s);
   options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
   return ValidateServerOptions(options);
 }

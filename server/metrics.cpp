@@ -30,28 +30,18 @@ CallMetrics::CallMetrics()
                    .Name("linetree_call_seconds")
                    .Help("From the arrival of a call to its end.")
                    .Register(registry_)),
-      open_gauge_(prometheus::BuildGauge()
-                      .Name("linetree_calls_open")
-                      .Help("Calls that have arrived and not ended.")
-                      .Register(registry_)
-                      .Add({})) {}
+      open_(prometheus::BuildGauge()
+                .Name("linetree_calls_open")
+                .Help("Calls that have arrived and not ended.")
+                .Register(registry_)
+                .Add({})) {}
 
 void CallMetrics::Begin(std::string_view method) {
-  if (ShortMethod(method) == kOther) return;
-  const std::lock_guard lock(mutex_);
-  open_gauge_.Set(static_cast<double>(++open_));
+  if (ShortMethod(method) != kOther) open_.Increment();
 }
 
 void CallMetrics::End(std::string_view method) {
-  if (ShortMethod(method) == kOther) return;
-  const std::lock_guard lock(mutex_);
-  open_gauge_.Set(static_cast<double>(--open_));
-  if (open_ == 0) idle_.notify_all();
-}
-
-void CallMetrics::WaitUntilIdle(std::chrono::steady_clock::time_point deadline) {
-  std::unique_lock lock(mutex_);
-  idle_.wait_until(lock, deadline, [this] { return open_ == 0; });
+  if (ShortMethod(method) != kOther) open_.Decrement();
 }
 
 void CallMetrics::Count(std::string_view method, grpc::StatusCode code,

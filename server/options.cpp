@@ -135,6 +135,9 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
   status = CheckRange("--max-flight-s", options.max_flight_s.count(), 0,
                       std::chrono::seconds(kMaxFlight).count());
   if (!status.ok()) return status;
+  status = CheckRange("--max-stall-s", options.max_stall_s.count(), 0,
+                      std::chrono::seconds(kMaxFlight).count());
+  if (!status.ok()) return status;
   if (options.memory_bytes < kMinMemoryBytes) {
     return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
                     absl::StrCat(options.memory_bytes));

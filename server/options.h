@@ -54,6 +54,9 @@ struct ServerOptions {
   double audit_share = 0;
   // How long a flight may last before it has to be resumed in a new stream; 0: for ever.
   std::chrono::seconds max_flight_s{0};
+  // How long a client may take nothing of what it has asked for before its call is cancelled; 0:
+  // for ever.
+  std::chrono::seconds max_stall_s{60};
   // How long open calls may go on after the signal to stop.
   std::chrono::milliseconds drain_timeout_ms{10'000};
   ServerLimits limits;

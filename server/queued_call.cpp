@@ -2,17 +2,21 @@
 
 #include <utility>
 
+#include "server/backend.h"
 #include "server/messages.h"
 
 namespace linetree {
 
-grpc::ServerUnaryReactor* QueuedCall::Start(JobQueue& queue, const JobInfo& job, CallInfo info,
-                                            grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* QueuedCall::Start(OpenCalls& calls, JobQueue& queue, const JobInfo& job,
+                                            CallInfo info, grpc::CallbackServerContext* context,
                                             grpc::ByteBuffer* reply, Work work) {
   const std::shared_ptr<QueuedCall> call(
-      new QueuedCall(queue, std::move(info), context, reply, std::move(work)));
+      new QueuedCall(calls, queue, std::move(info), context, reply, std::move(work)));
   call->self_ = call;
-  const auto id = queue.Submit(job, [call](const absl::Status& turn) { call->Run(turn); });
+  absl::StatusOr<JobId> id = Backend::Stopping();
+  if (call->open_) {
+    id = queue.Submit(job, [call](const absl::Status& turn) { call->Run(turn); });
+  }
   if (id.ok()) {
     call->job_ = *id;
   } else {

@@ -5,12 +5,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "absl/status/statusor.h"
 #include "core/render/scene_host.h"
 #include "server/call_info.h"
 #include "server/job_queue.h"
+#include "server/open_calls.h"
 
 namespace linetree {
 
@@ -20,23 +22,25 @@ class QueuedCall final : public grpc::ServerUnaryReactor {
 
   // Starts the call; it owns itself until gRPC is done with it. `job` says how the work is queued.
   // `reply` belongs to gRPC and lives as long as the call.
-  static grpc::ServerUnaryReactor* Start(JobQueue& queue, const JobInfo& job, CallInfo info,
-                                         grpc::CallbackServerContext* context,
+  static grpc::ServerUnaryReactor* Start(OpenCalls& calls, JobQueue& queue, const JobInfo& job,
+                                         CallInfo info, grpc::CallbackServerContext* context,
                                          grpc::ByteBuffer* reply, Work work);
 
   void OnCancel() override;
   void OnDone() override;
 
  private:
-  QueuedCall(JobQueue& queue, CallInfo info, grpc::CallbackServerContext* context,
+  QueuedCall(OpenCalls& calls, JobQueue& queue, CallInfo info, grpc::CallbackServerContext* context,
              grpc::ByteBuffer* reply, Work work)
-      : queue_(queue),
+      : open_(calls.Enter()),
+        queue_(queue),
         info_(std::move(info)),
         context_(context),
         reply_(reply),
         work_(std::move(work)) {}
   void Run(const absl::Status& turn);
 
+  const std::optional<OpenCalls::Share> open_;
   JobQueue& queue_;
   const CallInfo info_;
   grpc::CallbackServerContext* const context_;

@@ -12,9 +12,11 @@ absl::StatusOr<NamedHost> SceneStore::CheckAdd(const std::string& name, const Sc
                                                bool replace) const {
   const std::lock_guard lock(mutex_);
   const auto found = hosts_.find(name);
+  NamedHost former;
   if (found != hosts_.end()) {
-    const SceneVersion& version = found->second.host->scene().version;
-    if (version == scene.version) return found->second;
+    former = found->second;
+    const SceneVersion& version = former.host->scene().version;
+    if (version == scene.version) return former;
     if (!replace) {
       return absl::AlreadyExistsError(absl::StrCat("name: ", Quoted(name),
                                                    " holds other content (scene version ", version,
@@ -22,53 +24,64 @@ absl::StatusOr<NamedHost> SceneStore::CheckAdd(const std::string& name, const Sc
     }
   }
   if (auto status = CheckRoom(found, scene); !status.ok()) return status;
-  return found == hosts_.end() ? NamedHost() : found->second;
+  return former;
 }
 
 absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
                                           std::shared_ptr<const Scene> scene, bool replace,
-                                          std::optional<double> weight,
-                                          std::shared_ptr<const std::string> content) {
+                                          std::shared_ptr<const std::string> content,
+                                          std::optional<double> weight) {
   if (auto status = ValidateSceneName(name, "name"); !status.ok()) return status;
   // Dies after the lock is released: a big cache takes its time.
   auto former = CheckAdd(name, *scene, replace);
   if (!former.ok()) return former;
-  NamedHost added = *former;
-  added.weight = weight.value_or(former->weight);
-  const bool is_other = !former->host || former->host->scene().version != scene->version;
-  if (is_other) {
-    added.name = name;
-    added.host = std::make_shared<SceneHost>(std::move(scene), CacheOptions{limits_.memory_bytes});
-    added.audit = std::make_shared<AuditCounts>();
-    added.answers = std::make_shared<AnswerCounts>();
-    added.content = std::move(content);
-    Adopt(*former, added);
+  former->name = name;
+  former->weight = weight.value_or(former->weight);
+  if (former->host && former->host->scene().version == scene->version) {
+    const std::lock_guard lock(mutex_);
+    const auto found = hosts_.find(name);
+    if (found == hosts_.end()) return former;  // removed meanwhile
+    found->second.weight = former->weight;
+    ShareMemory();
+    return found->second;
+  }
+  NamedHost added{
+      name, std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
+      std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(), former->weight};
+  added.content = std::move(content);
+  if (former->host) {
+    // Outside the lock: it waits for those who read.
+    const auto begin = std::chrono::steady_clock::now();
+    added.adopted = added.host->Adopt(*former->host);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    added.adopt_ms = took.count();
   }
   const std::lock_guard lock(mutex_);
   NamedHost& kept = hosts_[name];
   kept = std::move(added);
   ShareMemory();
-  if (is_other && on_change_) on_change_(name, true);
+  if (on_change_) on_change_(name, true);
   return kept;
 }
 
-// Without the lock: it waits for those who read.
-void SceneStore::Adopt(const NamedHost& former, NamedHost& added) {
-  added.adopted = {};
-  added.adopt_ms = 0;
-  if (!former.host) return;
-  const auto begin = std::chrono::steady_clock::now();
-  added.adopted = added.host->Adopt(*former.host);
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-  added.adopt_ms = took.count();
+uint64_t SceneStore::ShareOf(const NamedHost& scene) const {
+  const std::lock_guard lock(mutex_);
+  double sum = scene.weight;
+  for (const auto& [name, host] : hosts_) {
+    if (name != scene.name) sum += host.weight;
+  }
+  return PartOf(scene.weight, sum);
+}
+
+uint64_t SceneStore::PartOf(double weight, double sum) const {
+  return static_cast<uint64_t>(weight / sum * static_cast<double>(limits_.memory_bytes));
 }
 
 void SceneStore::ShareMemory() {
   double sum = 0;
   for (const auto& [name, host] : hosts_) sum += host.weight;
   for (auto& [name, host] : hosts_) {
-    const double part = host.weight / sum;
-    host.memory_bytes = static_cast<uint64_t>(part * static_cast<double>(limits_.memory_bytes));
+    host.memory_bytes = PartOf(host.weight, sum);
     host.host->SetMemoryBytes(host.memory_bytes);
   }
 }

@@ -52,8 +52,8 @@ class SceneStore {
   // RESOURCE_EXHAUSTED when the store is full; all is then as it was. Without a `weight`, which
   // lies between the bounds above, the scene keeps that of the name, or gets 1. One call at a time.
   absl::StatusOr<NamedHost> Add(const std::string& name, std::shared_ptr<const Scene> scene,
-                                bool replace, std::optional<double> weight = std::nullopt,
-                                std::shared_ptr<const std::string> content = nullptr);
+                                bool replace, std::shared_ptr<const std::string> content = nullptr,
+                                std::optional<double> weight = std::nullopt);
 
   // INVALID_ARGUMENT for what is no name, NOT_FOUND for an unknown one; `path` names the field.
   absl::StatusOr<NamedHost> Find(const std::string& name, absl::string_view path) const;
@@ -71,11 +71,13 @@ class SceneStore {
  private:
   using Hosts = std::map<std::string, NamedHost>;
 
-  // What is there now (nothing: a null host), or why the scene cannot be added.
+  // What to replace (nothing: a null host), or why the scene cannot be added.
   absl::StatusOr<NamedHost> CheckAdd(const std::string& name, const Scene& scene,
                                      bool replace) const;
   absl::Status CheckRoom(const Hosts::const_iterator& replaced, const Scene& scene) const;
-  static void Adopt(const NamedHost& former, NamedHost& added);
+  // Of this name's weight beside the weights of all other names.
+  uint64_t ShareOf(const NamedHost& scene) const;
+  uint64_t PartOf(double weight, double sum) const;
   void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 

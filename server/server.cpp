@@ -1,8 +1,11 @@
 #include "server/server.h"
 
+#include <grpc/grpc.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
+
+#include <algorithm>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -17,6 +20,17 @@ namespace {
 constexpr int kKeepaliveTime_ms = 30'000;
 constexpr int kKeepaliveTimeout_ms = 10'000;
 constexpr int kMinPingInterval_ms = 10'000;
+
+// gRPC takes itself down with the last of its objects, and may then wait ten seconds for a poll of
+// its own; so it stays up until the process ends.
+void KeepGrpcUp() {
+  static const int once = (grpc_init(), 0);
+  static_cast<void>(once);
+}
+
+// Closing a connection on which something has come that gRPC has not read yet, as clients that read
+// send all the time, takes back what they have not read yet. So much time they get for it.
+constexpr std::chrono::milliseconds kLastReplies_ms{100};
 
 std::string WithPort(const std::string& listen, int port) {
   if (absl::StartsWith(listen, "unix:")) return listen;
@@ -47,6 +61,7 @@ absl::StatusOr<std::optional<Tokens>> ReadTokens(const std::string& file) {
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options,
                                                       std::shared_ptr<spdlog::logger> log) {
   if (auto status = ValidateServerOptions(options); !status.ok()) return status;
+  KeepGrpcUp();
   auto credentials = MakeCredentials(options.tls);
   if (!credentials.ok()) return credentials.status();
   auto tokens = ReadTokens(options.token_file);
@@ -153,13 +168,15 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   backend_.scenes().Observe(nullptr);
   // Whatever else is told from now on is not heard.
   if (auto* health = grpc_->GetHealthCheckService()) health->Shutdown();
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + timeout_ms;
   // Once gRPC shuts down, calls that arrive are cancelled without a word: better they hear it from
-  // the gate, until there are no others.
-  const auto deadline = std::chrono::steady_clock::now() + timeout_ms;
+  // the gate, until the others are done.
   gate_.Close();
   service_.Drain();
-  metrics_->WaitUntilIdle(deadline);
-  grpc_->Shutdown(std::chrono::system_clock::now() + (deadline - std::chrono::steady_clock::now()));
+  backend_.open_calls().Close(deadline, kLastReplies_ms);
+  const auto left = std::max(deadline - steady_clock::now(), steady_clock::duration::zero());
+  grpc_->Shutdown(std::chrono::system_clock::now() + left);
   grpc_.reset();
 }
 

@@ -66,6 +66,13 @@ absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf
 
 }  // namespace
 
+grpc::ServerUnaryReactor* Service::OnLoader(const CallInfo& info, Context* context, Bytes* reply,
+                                            QueuedCall::Work work) {
+  const JobInfo job{.session = info.session, .deadline = info.deadline};
+  return QueuedCall::Start(backend_.open_calls(), backend_.loads(), job, info, context, reply,
+                           std::move(work));
+}
+
 grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* request, Bytes* reply) {
   const CallInfo info = ReadCallInfo(context);
   // What is refused for its size does not wait in the queue.
@@ -81,8 +88,7 @@ grpc::ServerUnaryReactor* Service::LoadScene(Context* context, const Bytes* requ
       return backend_.LoadScene(std::move(r));
     });
   };
-  const JobInfo job{.session = info.session, .deadline = info.deadline};
-  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
+  return OnLoader(info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::ListScenes(Context* context, const Bytes* request,
@@ -111,8 +117,7 @@ grpc::ServerUnaryReactor* Service::UnloadScene(Context* context, const Bytes* re
         *request, backend_.limits().max_request_bytes,
         [this](const v1::UnloadSceneRequest& r) { return backend_.UnloadScene(r); });
   };
-  const JobInfo job{.session = info.session, .deadline = info.deadline};
-  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
+  return OnLoader(info, context, reply, work);
 }
 
 grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* request,
@@ -130,8 +135,7 @@ grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* re
         *request, max_bytes,
         [this](const v1::UpdateSceneRequest& r) { return backend_.UpdateScene(r); });
   };
-  const JobInfo job{.session = info.session, .deadline = info.deadline};
-  return QueuedCall::Start(backend_.loads(), job, info, context, reply, work);
+  return OnLoader(info, context, reply, work);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* Service::RenderFrame(Context* context,
@@ -161,7 +165,8 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
                     .session = info.session,
                     .work_rays = std::max<uint64_t>(*rays, 1),
                     .deadline = info.deadline};
-  return QueuedCall::Start(backend_.renders(), job, info, context, reply, work);
+  return QueuedCall::Start(backend_.open_calls(), backend_.renders(), job, info, context, reply,
+                           work);
 }
 
 grpc::ServerUnaryReactor* Service::GetStats(Context* context, const Bytes* request, Bytes* reply) {

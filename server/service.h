@@ -4,6 +4,7 @@
 #include "linetree/v1/service.grpc.pb.h"
 #include "server/backend.h"
 #include "server/fly_call.h"
+#include "server/queued_call.h"
 
 namespace linetree {
 
@@ -48,6 +49,10 @@ class Service final : public RawService {
                                       Bytes* reply) override;
 
  private:
+  // What changes scenes: one call after another.
+  grpc::ServerUnaryReactor* OnLoader(const CallInfo& info, Context* context, Bytes* reply,
+                                     QueuedCall::Work work);
+
   Backend& backend_;
   Flights flights_;
 };

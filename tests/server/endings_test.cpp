@@ -95,6 +95,44 @@ TEST(EndingsTest, AReaderThatGoesAwayGivesItsMemoryBack) {
   }
 }
 
+TEST(EndingsTest, AReaderThatTakesNothingDoesNotKeepItsMemoryForEver) {
+  ServerOptions options;
+  options.limits.max_frame_bytes = uint64_t{1000} * 1000 * kFrameBytesPerPixel;  // one such frame
+  options.max_stall_s = std::chrono::seconds(1);
+  test::RunningServer running(options);
+  const auto client = running.NewClient();
+  FrameRequest whole;
+  whole.width = whole.height = 1000;
+  const auto expect_room = [&] {
+    auto frame = client->RenderFrame("ball", whole, "front", false, nullptr);
+    while (absl::IsResourceExhausted(frame.status())) {
+      frame = client->RenderFrame("ball", whole, "front", false, nullptr);
+    }
+    EXPECT_TRUE(frame.ok()) << frame.status();
+  };
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // or the client's side might take a whole frame
+  const auto lazy = v1::RadianceCache::NewStub(grpc::CreateCustomChannel(
+      running.server().address(), grpc::InsecureChannelCredentials(), arguments));
+  grpc::ClientContext context, fly_context;
+  const auto stream = lazy->RenderFrame(&context, test::SmallFrame(1000, 1000));
+  v1::FrameChunk chunk;
+  ASSERT_TRUE(stream->Read(&chunk));
+  expect_room();
+  while (stream->Read(&chunk)) {
+  }
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
+  const auto flight = lazy->Fly(&fly_context);
+  v1::FlyRequest viewpoint = Viewpoint(0);
+  *viewpoint.mutable_frame() = test::SmallFrame(1000, 1000);
+  EXPECT_TRUE(flight->Write(viewpoint));
+  v1::FlyReply reply;
+  ASSERT_TRUE(flight->Read(&reply));
+  expect_room();
+  EXPECT_FALSE(ReadFrame(*flight));
+  EXPECT_EQ(flight->Finish().error_code(), StatusCode::CANCELLED);
+}
+
 TEST(EndingsTest, AChannelThatIsDroppedMidFlightDoesNoHarm) {
   test::RunningServer running;
   for (int round = 0; round < 5; ++round) {
@@ -247,6 +285,7 @@ TEST(EndingsTest, DrainingCancelsWhatIsNotDoneInTime) {
   EXPECT_TRUE(flight->Write(endless));
   running.server().Drain(milliseconds(20));
   EXPECT_FALSE(frame->Finish().ok());
+  EXPECT_FALSE(ReadFrame(*flight));  // though perhaps a farewell: the viewpoint may come too late
   EXPECT_FALSE(flight->Finish().ok());
   EXPECT_EQ(FramesRendered(running), 0u);
 }

@@ -12,8 +12,8 @@ namespace linetree {
 namespace {
 
 using grpc::StatusCode;
-using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 constexpr char kViewer[] = "looks-and-no-more";
 constexpr char kAdmin[] = "may-do-everything";
@@ -62,7 +62,7 @@ TEST_F(GateTest, EveryMethodAsksForATokenAndKnowsItsRole) {
     EXPECT_NE(admins.error_code(), StatusCode::PERMISSION_DENIED) << method;
     EXPECT_NE(admins.error_code(), StatusCode::UNIMPLEMENTED) << method;
   }
-  EXPECT_THAT(for_admins, ElementsAre("LoadScene", "UnloadScene", "UpdateScene"));
+  EXPECT_THAT(for_admins, UnorderedElementsAre("LoadScene", "UnloadScene", "UpdateScene"));
 }
 
 TEST_F(GateTest, StreamsAreRefusedToo) {

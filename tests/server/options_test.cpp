@@ -102,6 +102,7 @@ const BadOption kBadOptions[] = {
     {"--epsilon", [](Options& o) { o.defaults.max_relative_error = kNan; }},
     {"--max-depth", [](Options& o) { o.defaults.limits.max_depth = 17; }},
     {"--min-weight", [](Options& o) { o.defaults.limits.min_weight = -1; }},
+    {"--max-stall-s", [](Options& o) { o.max_stall_s = std::chrono::seconds(-1); }},
     {"--max-flight-s", [](Options& o) { o.max_flight_s = std::chrono::seconds(-1); }},
     {"--drain-timeout-ms", [](Options& o) { o.drain_timeout_ms = std::chrono::milliseconds(-1); }},
 };

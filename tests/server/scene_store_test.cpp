@@ -78,10 +78,10 @@ TEST(SceneStoreTest, CachesShareTheMemory) {
 TEST(SceneStoreTest, WeightsSayWhatPartOfTheMemoryAScenesCachesGet) {
   SceneStore store({.memory_bytes = 1'000'000});
   EXPECT_EQ(store.Add("a", SceneOfVersion("1"), false)->memory_bytes, 1'000'000u);
-  EXPECT_EQ(store.Add("b", SceneOfVersion("1"), false, 3)->memory_bytes, 750'000u);
+  EXPECT_EQ(store.Add("b", SceneOfVersion("1"), false, nullptr, 3)->memory_bytes, 750'000u);
   EXPECT_EQ(store.Find("a", "scene")->memory_bytes, 250'000u);
   EXPECT_EQ(store.Add("b", SceneOfVersion("2"), true)->weight, 3) << "the name's";
-  EXPECT_EQ(store.Add("b", SceneOfVersion("2"), false, 1)->memory_bytes, 500'000u);
+  EXPECT_EQ(store.Add("b", SceneOfVersion("2"), false, nullptr, 1)->memory_bytes, 500'000u);
   EXPECT_TRUE(store.Remove("b", "scene").ok());
   EXPECT_EQ(store.Find("a", "scene")->memory_bytes, 1'000'000u);
 }

@@ -133,12 +133,15 @@ class Vanishing(unittest.TestCase):
             self.assertEqual(reader.stdout.readline(), "asking\n")
             while server.process_cpu_s() < 1:  # then it is being rendered
                 time.sleep(0.01)
+            with self.assertRaises(grpc.RpcError) as late:
+                list(server.stub.RenderFrame(small_frame(), timeout=0.3))
+            self.assertEqual(late.exception.code(), grpc.StatusCode.DEADLINE_EXCEEDED)
             reader.kill()
             reader.communicate()
             chunks = server.stub.RenderFrame(small_frame(), timeout=PATIENCE_S)
             self.assertEqual(frame_ends(chunks), 1)
             stats = server.stub.GetStats(service_pb2.GetStatsRequest(), timeout=PATIENCE_S)
-            self.assertEqual(stats.scenes[0].frames, 1)
+            self.assertEqual(stats.scenes[0].frames, 1, "neither the endless nor the late one")
             self.assertEqual(server.stop(), 0)
 
 
