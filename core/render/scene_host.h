@@ -66,10 +66,10 @@ class SceneHost {
   SurfaceCache& surfaces() { return surfaces_; }
   PathCache& paths() { return paths_; }
 
-  // Takes over what the host of a former scene has learnt and the change from that scene to this one
-  // has not touched: of surface trees, certified linetrees and the planner. The former one goes on
-  // answering, without cache. Before this one answers anybody. n log n for n objects, and a look at
-  // every cell of an object that reflects or transmits.
+  // Takes over what the host of a former scene has learnt and the change from that scene to this
+  // one has not touched: of surface trees, certified linetrees and the planner. The former one goes
+  // on answering, without cache. Before this one answers anybody. n log n for n objects, and a look
+  // at every cell of an object that reflects or transmits.
   Adopted Adopt(SceneHost& former);
 
   // Bytes of both kinds of linetrees, samples and surface trees together, and the budget that they

@@ -115,7 +115,7 @@ TEST(UpdateSceneTest, FramesDuringEditsAreThoseOfTheVersionThatTheyName) {
   ASSERT_TRUE(running.client().LoadScene("ball", test::BallScene(), true).ok());
   std::thread editor([&] {
     for (int step = 0; step < 5; ++step) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      Rendered(running.client(), "ball", Mode::kClassical);  // meanwhile others are, too
       EXPECT_TRUE(Update(running, Request(kMoveBall)).status.ok());
     }
   });
