@@ -47,9 +47,12 @@ absl::StatusOr<NamedHost> Backend::Keep(const std::string& name, const SceneSour
                                         bool replace, std::optional<double> weight) {
   auto scene = BuildScene(source, options_.limits.scene);
   if (!scene.ok()) return scene.status();
+  std::string content;
+  if (!source.message().SerializeToString(&content)) {
+    return absl::ResourceExhaustedError("scene: expected a message of less than 2 GiB");
+  }
   return scenes_.Add(name, *std::move(scene), replace,
-                     std::make_shared<const std::string>(source.message().SerializeAsString()),
-                     weight);
+                     std::make_shared<const std::string>(std::move(content)), weight);
 }
 
 absl::Status Backend::LoadSceneFiles() {
@@ -80,7 +83,9 @@ absl::Status Backend::WarmUp(const std::function<void()>& ready) {
     for (const Camera& camera : *cameras) {
       frames.push_back({.camera = camera, .options = options_.defaults});
     }
-    all.emplace_back(*scenes_.Find(file.name, "--warm-up"), std::move(frames));
+    auto scene = scenes_.Find(file.name, "--warm-up");
+    if (!scene.ok()) continue;  // a client has unloaded it
+    all.emplace_back(*std::move(scene), std::move(frames));
   }
   if (all.empty()) ready();
   const auto left = std::make_shared<std::atomic<size_t>>(all.size());
@@ -188,7 +193,8 @@ v1::SceneInfo Backend::InfoOf(const NamedHost& scene) const {
   return info;
 }
 
-absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneRequest& request) {
+absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneRequest& request,
+                                                          const CancelToken& cancel) {
   auto former = scenes_.Find(request.scene(), "scene");
   if (!former.ok()) return former.status();
   const SceneVersion& version = former->host->scene().version;
@@ -201,7 +207,12 @@ absl::StatusOr<v1::UpdateSceneReply> Backend::UpdateScene(const v1::UpdateSceneR
   if (!message.ParseFromString(*former->content)) {
     return absl::InternalError("the scene's message cannot be read back");
   }
-  if (auto status = ApplyEdits(request.edits(), message); !status.ok()) return status;
+  if (auto status = ApplyEdits(request.edits(), message, &cancel); !status.ok()) return status;
+  const uint64_t max_bytes = options_.limits.scene.max_file_bytes;
+  if (message.ByteSizeLong() > max_bytes) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "edits: expected a scene of at most ", max_bytes, " bytes, got ", message.ByteSizeLong()));
+  }
   auto added = Keep(request.scene(), *SceneFromMessage(std::move(message)), /*replace=*/true);
   if (!added.ok()) return added.status();
   SceneHost& host = *added->host;

@@ -49,7 +49,8 @@ class Backend {
   absl::StatusOr<v1::SceneInfo> DescribeScene(const v1::DescribeSceneRequest& request) const;
   absl::StatusOr<v1::UnloadSceneReply> UnloadScene(const v1::UnloadSceneRequest& request);
   // Like LoadScene, one at a time: on loads().
-  absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request);
+  absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request,
+                                                   const CancelToken& cancel);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
   v1::GetLimitsReply GetLimits() const;
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,

@@ -80,7 +80,11 @@ bool FlightPlan::WantsMore() const {
 
 uint64_t FlightPlan::WorkOfNext() const {
   if (waiting_.empty()) return EstimatedRays(refinement_->frame());
-  return waiting_.front().ok() ? EstimatedRays(waiting_.front()->frame()) : 1;
+  const auto& next = waiting_.front();
+  if (!next.ok()) return 1;
+  v1::RenderFrameRequest frame = next->frame();
+  if (next->has_while_moving()) Reduce(next->while_moving(), frame);
+  return EstimatedRays(frame);
 }
 
 absl::StatusOr<FlightPlan::Step> FlightPlan::Next() {

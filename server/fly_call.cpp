@@ -1,5 +1,6 @@
 #include "server/fly_call.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -25,8 +26,10 @@ void FlyCall::Begin() {
   if (most.count() == 0) return;
   too_old_.Set(std::chrono::system_clock::now() + most,
                [most, flight = weak_from_this()](bool is_time) {
+                 // What is called off may come late, when nobody waits for the call any more.
+                 if (!is_time) return;
                  const auto call = flight.lock();
-                 if (!is_time || !call) return;
+                 if (!call) return;
                  const std::lock_guard lock(call->mutex_);
                  call->EndSoon(absl::UnavailableError(absl::StrCat(
                      "the flight has lasted for ", most.count(),
@@ -81,12 +84,13 @@ void FlyCall::Advance() {
 void FlyCall::SubmitNext() {
   working_ = true;
   // At most one job per flight, and flights are counted: these jobs need no bound of their own.
-  const auto job =
-      backend_.renders().Submit({.session = absl::StrCat("flight ", token_.session),
-                                 .work_rays = plan_.WorkOfNext(),
-                                 .deadline = info_.deadline,
-                                 .has_place = true},
-                                [call = self_](const absl::Status& turn) { call->Run(turn); });
+  const auto job = backend_.renders().Submit(
+      {.session = absl::StrCat("flight ", token_.session),
+       // What is more than may be asked for is refused in its turn.
+       .work_rays = std::min(plan_.WorkOfNext(), backend_.limits().render.max_samples),
+       .deadline = info_.deadline,
+       .has_place = true},
+      [call = self_](const absl::Status& turn) { call->Run(turn); });
   job_ = *job;
 }
 

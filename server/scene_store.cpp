@@ -81,8 +81,10 @@ void SceneStore::ShareMemory() {
   double sum = 0;
   for (const auto& [name, host] : hosts_) sum += host.weight;
   for (auto& [name, host] : hosts_) {
-    host.memory_bytes = PartOf(host.weight, sum);
-    host.host->SetMemoryBytes(host.memory_bytes);
+    const uint64_t part = PartOf(host.weight, sum);
+    // It waits for whoever lets the caches grow.
+    if (part == std::exchange(host.memory_bytes, part)) continue;
+    host.host->SetMemoryBytes(part);
   }
 }
 

@@ -175,8 +175,10 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   gate_.Close();
   service_.Drain();
   backend_.open_calls().Close(deadline, kLastReplies_ms);
+  // What is still open now is watched health and reflection, which never end by themselves.
   const auto left = std::max(deadline - steady_clock::now(), steady_clock::duration::zero());
-  grpc_->Shutdown(std::chrono::system_clock::now() + left);
+  grpc_->Shutdown(std::chrono::system_clock::now() +
+                  std::min<steady_clock::duration>(left, kLastReplies_ms));
   grpc_.reset();
 }
 

@@ -127,13 +127,13 @@ grpc::ServerUnaryReactor* Service::UpdateScene(Context* context, const Bytes* re
   const auto status = CheckSize(*request, max_bytes, v1::UpdateSceneRequest());
   if (!status.ok()) return Finish(context, info, status);
   const auto work = [this, request, max_bytes,
-                     id = info.request_id](const CancelToken&) -> absl::StatusOr<Bytes> {
+                     id = info.request_id](const CancelToken& cancel) -> absl::StatusOr<Bytes> {
     const LogFields fields(LogFields::Fields{{"request_id", id}});
     const auto counted = CheckMessages(*request, v1::UpdateSceneRequest(), backend_.limits());
     if (!counted.ok()) return counted;
     return Handle<v1::UpdateSceneRequest>(
         *request, max_bytes,
-        [this](const v1::UpdateSceneRequest& r) { return backend_.UpdateScene(r); });
+        [&](const v1::UpdateSceneRequest& r) { return backend_.UpdateScene(r, cancel); });
   };
   return OnLoader(info, context, reply, work);
 }

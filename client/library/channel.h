@@ -36,14 +36,18 @@ class Caller {
   bool WaitToRetry(Retries& retries, const absl::Status& status, Deadline deadline) const;
 
   // Runs attempt(context) -> grpc::Status until it succeeds or has no more attempts.
+  // Of calls that are not to be made twice only attempts that were refused for want of room, which
+  // have not begun, are repeated.
+  enum class Repeat { kAlways, kIfRefused };
   template <class Attempt>
-  absl::Status Call(const Attempt& attempt) const {
+  absl::Status Call(const Attempt& attempt, Repeat repeat = Repeat::kAlways) const {
     const Deadline deadline = DeadlineOf();
     Retries retries(options_.retry);
     for (;;) {
       grpc::ClientContext context;
       Prepare(context, deadline);
       const absl::Status status = StatusOf(attempt(context), context);
+      if (repeat == Repeat::kIfRefused && !absl::IsResourceExhausted(status)) return status;
       if (status.ok() || !WaitToRetry(retries, status, deadline)) return status;
     }
   }

@@ -25,7 +25,8 @@ class GrpcClient final : public Client {
     request.set_name(name);
     *request.mutable_scene() = scene;
     request.set_replace(replace);
-    return Call<v1::SceneInfo>(&Stub::LoadScene, request);
+    return Call<v1::SceneInfo>(&Stub::LoadScene, request,
+                               replace ? Repeat::kIfRefused : Repeat::kAlways);
   }
 
   absl::StatusOr<std::vector<v1::SceneInfo>> ListScenes() override {
@@ -43,16 +44,11 @@ class GrpcClient final : public Client {
   absl::Status UnloadScene(const std::string& name) override {
     v1::UnloadSceneRequest request;
     request.set_scene(name);
-    return Call<v1::UnloadSceneReply>(&Stub::UnloadScene, request).status();
+    return Call<v1::UnloadSceneReply>(&Stub::UnloadScene, request, Repeat::kIfRefused).status();
   }
 
   absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request) override {
-    grpc::ClientContext context;
-    caller_.Prepare(context, caller_.DeadlineOf());
-    v1::UpdateSceneReply reply;
-    const auto status = Caller::StatusOf(stub_->UpdateScene(&context, request, &reply), context);
-    if (!status.ok()) return status;
-    return reply;
+    return Call<v1::UpdateSceneReply>(&Stub::UpdateScene, request, Repeat::kIfRefused);
   }
 
   absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
@@ -81,14 +77,16 @@ class GrpcClient final : public Client {
 
  private:
   using Stub = v1::RadianceCache::Stub;
+  using Repeat = Caller::Repeat;
 
   template <class Reply, class Request, class Method>
-  absl::StatusOr<Reply> Call(Method method, const Request& request) {
+  absl::StatusOr<Reply> Call(Method method, const Request& request,
+                             Repeat repeat = Repeat::kAlways) {
     Reply reply;
     const auto attempt = [&](grpc::ClientContext& context) {
       return (stub_.get()->*method)(&context, request, &reply);
     };
-    if (auto status = caller_.Call(attempt); !status.ok()) return status;
+    if (auto status = caller_.Call(attempt, repeat); !status.ok()) return status;
     return reply;
   }
 

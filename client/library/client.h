@@ -2,10 +2,11 @@
 //
 // Every call has a deadline. What fails for want of room (RESOURCE_EXHAUSTED with a hint) or of a
 // connection (UNAVAILABLE) is tried again, with delays that grow and are drawn at random, as long
-// as the deadline leaves room for it: no such call changes anything that a second one would change
-// again (UpdateScene, which does, has one attempt). A lost connection comes back by itself; a
-// flight goes on with the first frame that is missing. Other errors, and the last of many, come
-// back as absl::Status with the server's words.
+// as the deadline leaves room for it. Calls that a second time might change something else
+// (LoadScene with `replace`, UnloadScene, UpdateScene) are tried again only while they are refused,
+// before they begin. A lost connection comes back by itself; a flight goes on with the first frame
+// that is missing. Other errors, and the last of many, come back as absl::Status with the server's
+// words.
 //
 // client/example/orbit.cpp is an example.
 //

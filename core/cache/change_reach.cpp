@@ -117,7 +117,8 @@ bool ChangeReach::Names(const CellPaths& paths) const {
 }
 
 // The rays that leave from where those of the step end. Where these end is known by object; those
-// that leave the scene may meet anything new.
+// that leave the scene may meet anything new. Legs without a list count as well: what they lead to
+// depends on their directions, and these on the solids around their ends.
 bool ChangeReach::CrossesLegs(const CellPaths& paths, size_t step, const Box3& ends) const {
   for (const int32_t ahead : {paths.steps[step].reflected, paths.steps[step].transmitted}) {
     if (ahead == 0) continue;
@@ -129,7 +130,7 @@ bool ChangeReach::CrossesLegs(const CellPaths& paths, size_t step, const Box3& e
     }
     const auto object = static_cast<size_t>(change_.now[static_cast<size_t>(leg.object)]);
     const Box3& target = now_.objects[object].bounds;
-    if (leg.listed && Crosses(ends, target)) return true;
+    if (Crosses(ends, target)) return true;
     if (paths.interpolant && CrossesToLights(target)) return true;
     if (CrossesLegs(paths, next, target)) return true;
   }

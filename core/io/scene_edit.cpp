@@ -112,8 +112,11 @@ class Editor {
 }  // namespace
 
 absl::Status ApplyEdits(const google::protobuf::RepeatedPtrField<v1::SceneEdit>& edits,
-                        v1::Scene& scene) {
+                        v1::Scene& scene, const CancelToken* cancel) {
   for (int i = 0; i < edits.size(); ++i) {
+    if (cancel != nullptr && cancel->IsCancelled()) {
+      return absl::CancelledError("the call was cancelled");
+    }
     const std::string path = absl::StrCat("edits[", i, "]");
     if (auto status = Editor(scene, path).Apply(edits[i]); !status.ok()) return status;
   }

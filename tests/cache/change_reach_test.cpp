@@ -51,6 +51,17 @@ TEST(ChangeReachTest, WhatComesBetweenTheEndsOfALegTouchesIt) {
   EXPECT_FALSE(BallTouches({0, 12, 0}, false)) << "behind the wall";
 }
 
+// A solid around the end of a leg turns the rays that leave it, whatever the leg itself can meet.
+TEST(ChangeReachTest, LegsWithoutAListAreTouchedToo) {
+  const Scene former = MirrorAndWall();
+  Scene now = former;
+  test::AddObject(now, test::Sphere({0, 0, 0}, 0.2), 1);
+  const SceneChange change = ChangeBetween(former, now);
+  const MirrorCell cell(former);
+  const_cast<CellPaths&>(*cell.node.payload).steps[1].listed = false;
+  EXPECT_TRUE(ChangeReach(now, change).Touches(cell.tree, cell.node));
+}
+
 TEST(ChangeReachTest, WhatComesBeforeALampTouchesInterpolantsOnly) {
   for (const Vec3d from : {Vec3d{0, 0, 0}, Vec3d{0, 10, 0}}) {
     const Vec3d lamp = {20, 5, 40}, between = from + (lamp - from) * 0.5;

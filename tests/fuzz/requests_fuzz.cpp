@@ -62,7 +62,7 @@ void Handle(const v1::TraceRaysRequest& request) {
 }
 void Handle(const v1::GetStatsRequest& request) { Check(TheBackend().GetStats(request).status()); }
 void Handle(const v1::UpdateSceneRequest& request) {
-  if (request.scene() != "ball") Check(TheBackend().UpdateScene(request).status());
+  if (request.scene() != "ball") Check(TheBackend().UpdateScene(request, CancelToken()).status());
 }
 void Handle(const v1::GetLimitsRequest&) { TheBackend().GetLimits(); }
 

@@ -71,7 +71,7 @@ TEST(FlightPlanTest, AReducedFrameIsRefinedAtRest) {
   v1::FlyRequest request = Viewpoint(7, v1::PACING_NEWEST, 3);
   request.mutable_while_moving()->set_max_relative_error(0.5);
   plan.Add(request);
-  EXPECT_EQ(plan.WorkOfNext(), 5000u);
+  EXPECT_EQ(plan.WorkOfNext(), 34u * 17);
   const auto reduced = NextOf(plan);
   EXPECT_TRUE(reduced.reduced);
   EXPECT_EQ(reduced.viewpoint.frame().width(), 34u);
