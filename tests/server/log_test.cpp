@@ -22,7 +22,8 @@ std::string LineOf(LogFormat format, const std::string& message) {
 }
 
 TEST(LogFormatTest, OneLineWhateverIsInIt) {
-  const std::string nasty("a \"quoted\"\nline\x01 \xff\xfe \xe2\x82\xac \0 end", 31);
+  using std::string_literals::operator""s;
+  const std::string nasty = "a \"quoted\"\nline\x01 \xff\xfe \xe2\x82\xac \0 end"s;
   const LogFields fields({{"field", nasty}, {"plain", "1.5"}});
   for (const LogFormat format : {LogFormat::kText, LogFormat::kJson}) {
     const std::string line = LineOf(format, nasty);
