@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMinTokenBytes = 16;
 constexpr size_t kMaxTokenBytes = 256;
-constexpr uint64_t kMaxFileBytes = uint64_t{1} << 20;
+constexpr uint64_t kMaxTokenFileBytes = uint64_t{1} << 20;
 
 absl::Status Bad(const std::string& file_name, size_t line, absl::string_view expected) {
   return absl::InvalidArgumentError(absl::StrCat(file_name, ":", line, ": expected ", expected));
@@ -70,7 +70,7 @@ absl::StatusOr<Tokens> Tokens::Parse(absl::string_view text, const std::string& 
 }
 
 absl::StatusOr<Tokens> Tokens::Read(const std::string& path) {
-  const auto text = ReadFileAtMost(path, kMaxFileBytes);
+  const auto text = ReadFileAtMost(path, kMaxTokenFileBytes);
   if (!text.ok()) return text.status();
   return Parse(*text, path);
 }

@@ -31,7 +31,7 @@ struct BenchErrorFlags {
   bool quiet = false;
 };
 
-absl::StatusOr<std::vector<ErrorSweepRow>> Sweep(const BenchErrorFlags& flags) {
+absl::StatusOr<std::vector<ErrorSweepRow>> SweepScene(const BenchErrorFlags& flags) {
   const absl::StatusOr<SceneFile> file = ReadSceneFileChecked(flags.scene.scene);
   if (!file.ok()) return file.status();
   const absl::StatusOr<Camera> camera =
@@ -55,7 +55,7 @@ absl::StatusOr<std::vector<ErrorSweepRow>> Sweep(const BenchErrorFlags& flags) {
 
 absl::StatusOr<int> BenchError(const BenchErrorFlags& flags) {
   if (absl::Status status = CheckFolders(flags.outputs); !status.ok()) return status;
-  const absl::StatusOr<std::vector<ErrorSweepRow>> rows = Sweep(flags);
+  const absl::StatusOr<std::vector<ErrorSweepRow>> rows = SweepScene(flags);
   if (!rows.ok()) return rows.status();
   const std::string csv = ErrorSweepCsv(*rows);
   bool csv_written = false;
