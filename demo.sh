@@ -36,7 +36,7 @@ rm -rf "$out"
 mkdir -p "$out"
 
 # Port 0: the system picks a free one, and the server says which once it listens.
-coproc SERVER { exec "$bin/linetreed" --scene "balls=$scene" --listen 127.0.0.1:0 2>"$out/server.log"; }
+coproc SERVER { exec "$bin/linetreed" --scene "balls=$scene" --no-store --listen 127.0.0.1:0 2>"$out/server.log"; }
 server_pid=$SERVER_PID
 exec {server_out}<&"${SERVER[0]}"
 stop_server() {

@@ -10,6 +10,7 @@
 #include "core/io/scene_edit.h"
 #include "core/io/wire.h"
 #include "core/io/wire_frame.h"
+#include "core/store/data_folder.h"
 #include "server/limit_list.h"
 #include "server/scene_root.h"
 
@@ -22,14 +23,28 @@ absl::StatusOr<std::unique_ptr<SceneSource>> ParseText(const std::string& text,
   return is_nff ? ParseNff(text, name, limits) : ParseSceneText(text, name, limits);
 }
 
+// Null, and a line of the log, where cells cannot be kept: the server does without.
+std::unique_ptr<CellStore> OpenCells(const ServerOptions& options,
+                                     const std::shared_ptr<spdlog::logger>& log) {
+  if (options.data_folder.empty()) return nullptr;
+  auto store =
+      CellStore::Open({.folder = CellFolder(options.data_folder), .max_bytes = options.store_bytes},
+                      [log](const std::string& line) { log->warn("{}", line); });
+  if (store.ok()) return *std::move(store);
+  log->warn("{}; cells are not kept", std::string(store.status().message()));
+  return nullptr;
+}
+
 }  // namespace
 
 Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
     : options_(options),
       log_(std::move(log)),
+      cells_(OpenCells(options, log_)),
       scenes_({.max_scenes = options.limits.max_scenes,
                .max_objects = options.limits.max_objects_in_all_scenes,
-               .memory_bytes = options.memory_bytes}),
+               .memory_bytes = options.memory_bytes},
+              cells_.get()),
       pool_(options.threads),
       frame_bytes_(options.limits.max_frame_bytes),
       flights_(options.limits.max_flights),
@@ -68,6 +83,9 @@ absl::Status Backend::LoadSceneFiles() {
     const Scene& scene = added->host->scene();
     log_->info("scene {} from {}: {} objects, version {}", file.name, file.path,
                scene.objects.size(), scene.version);
+    if (const uint64_t cells = added->pages ? added->pages->counts().cells_restored : 0) {
+      log_->info("scene {}: {} cells from the disk", file.name, cells);
+    }
   }
   return absl::OkStatus();
 }
@@ -252,6 +270,7 @@ v1::GetStatsReply::SceneStats Backend::StatsOf(const NamedHost& scene) {
   v1::GetStatsReply::SceneStats stats = SceneStatsToWire(scene.name, *scene.host);
   *stats.mutable_audit() = AuditStatsToWire(scene.audit->values());
   AnswerCountsToWire(scene.answers->values(), scene.host->scene(), &stats);
+  if (scene.pages) *stats.mutable_store() = StoreStatsToWire(scene.pages->counts());
   return stats;
 }
 

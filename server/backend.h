@@ -97,6 +97,7 @@ class Backend {
   const ServerOptions options_;
   const std::shared_ptr<spdlog::logger> log_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  const std::unique_ptr<CellStore> cells_;  // null: nothing is kept
   SceneStore scenes_;
   WorkerPool pool_;
   Budget frame_bytes_;

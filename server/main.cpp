@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/store/data_folder.h"
 #include "server/log_capture.h"
 #include "server/log_format.h"
 #include "server/log_sink.h"
@@ -23,6 +24,7 @@ struct Flags {
   std::string log_format = "text";
   std::string judge = "certified";
   std::string lanes = "scalar";
+  bool no_store = false;
   int64_t drain_timeout_ms = 0;
   int64_t max_flight_s = 0;
   int64_t max_stall_s = 0;
@@ -58,6 +60,15 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
       ->capture_default_str();
   app.add_option("--memory", options.memory_bytes,
                  "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
+      ->default_str("1GiB");
+  app.add_option("--data-dir", options.data_folder,
+                 "folder where the caches' cells are kept, so that the next server starts warm")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  app.add_flag("--no-store", flags.no_store, "keep nothing on the disk");
+  app.add_option("--store-bytes", options.store_bytes,
+                 "size that the file of cells may have; KiB, MiB, GiB are understood")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->default_str("1GiB");
   app.add_option(
@@ -155,6 +166,7 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
   }
   options.defaults.judge = flags.judge == "certified" ? JudgeKind::kCertified : JudgeKind::kPaper;
   options.defaults.lanes = flags.lanes == "simd" ? Lanes::kSimd : Lanes::kScalar;
+  if (flags.no_store) options.data_folder.clear();
   options.max_flight_s = std::chrono::seconds(flags.max_flight_s);
   options.max_stall_s = std::chrono::seconds(flags.max_stall_s);
   options.drain_timeout_ms = std::chrono::milliseconds(flags.drain_timeout_ms);
@@ -171,6 +183,8 @@ sigset_t BlockEndSignals() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   // Whoever read our standard output may go away.
   signal(SIGPIPE, SIG_IGN);
+  // A file that may not grow any more is an error of whoever writes it.
+  signal(SIGXFSZ, SIG_IGN);
   return signals;
 }
 
@@ -210,6 +224,7 @@ int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& l
 int main(int argc, char** argv) {
   CLI::App app{"Serves radiance from shared caches of scenes."};
   linetree::ServerOptions options;
+  options.data_folder = linetree::DefaultDataFolder();
   linetree::Flags flags;
   linetree::AddFlags(app, options, flags);
   CLI11_PARSE(app, argc, argv);

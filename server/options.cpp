@@ -18,6 +18,8 @@ namespace {
 constexpr int kMaxThreads = 1024;
 constexpr int kMaxRenderSlots = 64;
 // Less than this cannot hold the cells of a single view.
+// What an empty database takes, and some pages.
+constexpr uint64_t kMinStoreBytes = 1 << 20;
 constexpr uint64_t kMinMemoryBytes = uint64_t{1} << 20;
 constexpr std::chrono::hours kMaxDrain{1};
 constexpr std::chrono::hours kMaxFlight{24 * 365};
@@ -141,6 +143,10 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
   if (options.memory_bytes < kMinMemoryBytes) {
     return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
                     absl::StrCat(options.memory_bytes));
+  }
+  if (options.store_bytes < kMinStoreBytes) {
+    return Expected("--store-bytes", absl::StrCat("at least ", kMinStoreBytes, " bytes"),
+                    absl::StrCat(options.store_bytes));
   }
   if (!(options.audit_share >= 0 && options.audit_share <= 1)) {
     return Expected("--audit", "a number in [0, 1]", absl::StrCat(options.audit_share));

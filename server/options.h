@@ -47,6 +47,10 @@ struct ServerOptions {
   int render_slots = 2;
   // For the caches of all scenes together.
   uint64_t memory_bytes = uint64_t{1} << 30;
+  // Where cells are kept from one process to the next, and how large that file may become; empty:
+  // they are not.
+  std::string data_folder;
+  uint64_t store_bytes = uint64_t{1} << 30;
   // What requests get that do not say otherwise.
   RenderOptions defaults;
   // Share of the answers from caches that are traced again, to count those that break their

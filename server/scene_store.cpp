@@ -56,12 +56,21 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     added.adopt_ms = took.count();
   }
+  KeepCells(added);
   const std::lock_guard lock(mutex_);
   NamedHost& kept = hosts_[name];
   kept = std::move(added);
   ShareMemory();
   if (on_change_) on_change_(name, true);
   return kept;
+}
+
+void SceneStore::KeepCells(NamedHost& scene) const {
+  if (cells_ == nullptr) return;
+  SceneHost& host = *scene.host;
+  const auto pages = cells_->Attach(scene.name, {host.scene(), host.surfaces(), host.paths()});
+  host.Keep(pages);
+  scene.pages = pages;
 }
 
 uint64_t SceneStore::ShareOf(const NamedHost& scene) const {

@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
+#include "core/store/cell_store.h"
 #include "server/answer_counts.h"
 
 namespace linetree {
@@ -32,6 +33,8 @@ struct NamedHost {
   // What the host took over from the one that it replaced.
   Adopted adopted{};
   double adopt_ms = 0;
+  // What is kept of it on the disk; null: nothing.
+  std::shared_ptr<const ScenePages> pages{};
 };
 
 inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
@@ -44,7 +47,9 @@ class SceneStore {
     uint64_t memory_bytes = uint64_t{1} << 30;  // for the caches of all scenes together
   };
 
-  explicit SceneStore(const Limits& limits) : limits_(limits) {}
+  // `cells` is where the scenes' cells are kept, and outlives the store; null: nowhere.
+  explicit SceneStore(const Limits& limits, CellStore* cells = nullptr)
+      : limits_(limits), cells_(cells) {}
 
   // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
   // ALREADY_EXISTS unless `replace`: then it takes over what is known of all that is the same in
@@ -81,7 +86,11 @@ class SceneStore {
   void ShareMemory();  // needs mutex_
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 
+  // Gives a new host what is kept of its scene, and keeps what it learns.
+  void KeepCells(NamedHost& scene) const;
+
   const Limits limits_;
+  CellStore* const cells_;
   mutable std::mutex mutex_;
   // Guarded by mutex_.
   Hosts hosts_;

@@ -111,6 +111,25 @@ void AddHoldings(const v1::GetStatsReply& stats, Families& out) {
   }
 }
 
+// Scenes that are not kept have no values.
+void AddStore(const v1::GetStatsReply& stats, Families& out) {
+  out.Begin("linetree_store_cells_total", MetricType::Counter,
+            "Cells that were kept on the disk, by what became of them.");
+  for (const SceneStats& scene : stats.scenes()) {
+    if (!scene.has_store()) continue;
+    const auto& store = scene.store();
+    out.Add(store.cells_restored(), {{"scene", scene.scene()}, {"cells", "restored"}});
+    out.Add(store.cells_left(), {{"scene", scene.scene()}, {"cells", "left"}});
+    out.Add(store.cells_written(), {{"scene", scene.scene()}, {"cells", "written"}});
+    out.Add(store.cells_lost(), {{"scene", scene.scene()}, {"cells", "lost"}});
+  }
+  out.Begin("linetree_store_odd_pages_total", MetricType::Counter,
+            "Pages that were not as they had been written.");
+  for (const SceneStats& scene : stats.scenes()) {
+    if (scene.has_store()) out.Add(scene.store().pages_odd(), {{"scene", scene.scene()}});
+  }
+}
+
 void AddAudit(const v1::GetStatsReply& stats, Families& out) {
   out.Begin("linetree_audit_checked_total", MetricType::Counter, "Answers that were traced again.");
   AddOfScenes(stats, out, [](const SceneStats& s) { return s.audit().checked(); });
@@ -140,6 +159,7 @@ std::vector<MetricFamily> CollectServer(const v1::GetStatsReply& stats, const Lo
   AddAnswers(stats, families);
   AddHoldings(stats, families);
   AddAudit(stats, families);
+  AddStore(stats, families);
   families.Begin("process_resident_memory_bytes", MetricType::Gauge, "Of this process.");
   families.Add(ResidentBytes());
   return families.Take();

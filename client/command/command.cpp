@@ -112,6 +112,7 @@ int RunCommandLine(int argc, const char* const* argv) {
   AddStats(app, commands);
   AddScene(app, commands);
   AddCompare(app, commands);
+  AddStore(app, commands);
   AddLoad(app, commands);
   AddBench(app, commands);
   try {

@@ -1,4 +1,5 @@
 // linetree stats: what a server holds and has done.
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -34,6 +35,16 @@ nlohmann::json AnswersJson(const v1::GetStatsReply::AnswerCounts& answers) {
            std::map<std::string, uint64_t>(answers.verdicts().begin(), answers.verdicts().end())}};
 }
 
+// Null where the server keeps nothing on its disk.
+nlohmann::json StoreJson(const SceneStats& scene) {
+  if (!scene.has_store()) return nullptr;
+  const auto& store = scene.store();
+  return {{"cells_restored", store.cells_restored()}, {"cells_left", store.cells_left()},
+          {"cells_written", store.cells_written()},   {"cells_lost", store.cells_lost()},
+          {"pages_odd", store.pages_odd()},           {"waiting_bytes", store.waiting_bytes()},
+          {"restore_ms", store.restore_ms()},         {"index_bytes", store.index_bytes()}};
+}
+
 nlohmann::json SceneStatsJson(const SceneStats& scene) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : scene.objects()) {
@@ -63,7 +74,8 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
            {{"checked", scene.audit().checked()},
             {"violations", scene.audit().violations()},
             {"dropped", scene.audit().dropped()},
-            {"max_error_over_allowed", JsonNumber(scene.audit().max_error_over_allowed())}}}};
+            {"max_error_over_allowed", JsonNumber(scene.audit().max_error_over_allowed())}}},
+          {"store", StoreJson(scene)}};
 }
 
 nlohmann::json ReplyJson(const v1::GetStatsReply& reply) {
@@ -132,6 +144,24 @@ std::string AuditTable(const v1::GetStatsReply& reply) {
     table.AddRow({scene.scene(), Grouped(audit.checked()), Grouped(audit.violations()),
                   absl::StrFormat("%.3g", audit.max_error_over_allowed()),
                   Grouped(audit.dropped())});
+  }
+  return table.ToString();
+}
+
+// What is kept on the server's disk, a row for every scene.
+std::string StoreTable(const v1::GetStatsReply& reply) {
+  Table table({{"scene"},
+               {"cells restored", Align::kRight},
+               {"no room for", Align::kRight},
+               {"restored in", Align::kRight},
+               {"cells written", Align::kRight},
+               {"lost", Align::kRight},
+               {"odd pages", Align::kRight}});
+  for (const SceneStats& scene : reply.scenes()) {
+    const auto& store = scene.store();
+    table.AddRow({scene.scene(), Grouped(store.cells_restored()), Grouped(store.cells_left()),
+                  absl::StrFormat("%.1f ms", store.restore_ms()), Grouped(store.cells_written()),
+                  Grouped(store.cells_lost()), Grouped(store.pages_odd())});
   }
   return table.ToString();
 }
@@ -220,6 +250,9 @@ absl::StatusOr<int> Stats(const StatsFlags& flags) {
                                  reply->audit_share())
               << AuditTable(*reply);
   }
+  const bool is_kept = std::any_of(reply->scenes().begin(), reply->scenes().end(),
+                                   [](const SceneStats& scene) { return scene.has_store(); });
+  if (is_kept) std::cout << "\nCells on the server's disk\n" << StoreTable(*reply);
   if (!flags.objects) return kExitOk;
   for (const SceneStats& scene : reply->scenes()) {
     std::cout << "\nCells of " << scene.scene() << " by verdict\n"

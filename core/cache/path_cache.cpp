@@ -200,18 +200,46 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
                            forest.limits, group.parent));
   });
   std::vector<Sample> next;
+  std::vector<const Group*> published;
   std::unique_lock lock(mutex_);
   const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
-    if (group.paths && forest.store.Publish(node, std::move(group.paths), budget)) ++certified;
+    if (group.paths && forest.store.Publish(node, std::move(group.paths), budget)) {
+      ++certified;
+      if (journal_ != nullptr) published.push_back(&group);
+    }
     if (!node.payload || node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
     // Where dividing has not helped so far, more rays must ask for it.
     if (node.uses < uint64_t{kMinPathDivision} << std::min(group.barren_levels, 8)) continue;
     if (!forest.store.Divide(node, clock_, budget)) continue;
     next.insert(next.end(), group.samples.begin(), group.samples.end());
   }
+  lock.unlock();
+  // Nothing is evicted meanwhile: only who refines does that.
+  for (const Group* group : published) {
+    const PathNode& node = *group->node;
+    journal_->Write(forest.limits, {group->object, node.root, node.cell}, *node.payload);
+  }
   return next;
+}
+
+size_t PathCache::Restore(const PathLimits& limits, std::span<KeptPathCell> cells) {
+  std::lock_guard refining(refine_mutex_);
+  std::unique_lock lock(mutex_);
+  if (FindForest(limits) == nullptr && forests_.size() >= kMaxPathForests) return 0;
+  Forest& forest = OpenForest(limits);
+  const uint64_t others = UsedBytes() - forest.store.byte_size();
+  const uint64_t target = EvictionTarget(memory_bytes_);
+  size_t restored = 0;
+  for (auto& [place, paths] : cells) {
+    if (place.cell.depth > max_depth_) continue;
+    if (!forest.store.Restore(static_cast<size_t>(place.object), place.pair, place.cell,
+                              std::move(paths), clock_, target > others ? target - others : 0))
+      break;
+    ++restored;
+  }
+  return restored;
 }
 
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
@@ -99,6 +100,10 @@ class PathCache {
   // As SurfaceCache::Adopt.
   Adopted Adopt(PathCache& former, const ChangeReach& reach);
 
+  // As those of SurfaceCache. Of more path limits than there may be trees for, none are taken back.
+  void SetJournal(CellJournal* journal) { journal_ = journal; }
+  size_t Restore(const PathLimits& limits, std::span<KeptPathCell> cells);
+
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
@@ -129,6 +134,7 @@ class PathCache {
   const PathCertifier certifier_;
   const SolidInteriors interiors_;
   const int max_depth_;
+  CellJournal* journal_ = nullptr;
   std::vector<bool> branches_;  // by object: whether it reflects or transmits
   std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;

@@ -119,20 +119,42 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
     work.lights = std::move(lights);
   });
   std::vector<Work> next;
-  std::unique_lock lock(mutex_);
-  for (Work& work : works) {
-    SurfaceNode& node = *work.node;
-    if (!node.payload) {
-      if (!work.lights) continue;  // the loop was cut short
-      if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
-    }
-    if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, memory_bytes_))
-      continue;
-    for (SurfaceNode& child : *node.children) {
-      next.push_back({&child, work.object, work.points / 4, node.payload.get()});
+  std::vector<const Work*> published;
+  {
+    std::unique_lock lock(mutex_);
+    for (Work& work : works) {
+      SurfaceNode& node = *work.node;
+      if (!node.payload) {
+        if (!work.lights) continue;  // the loop was cut short
+        if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
+        if (journal_ != nullptr) published.push_back(&work);
+      }
+      if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, memory_bytes_))
+        continue;
+      for (SurfaceNode& child : *node.children) {
+        next.push_back({&child, work.object, work.points / 4, node.payload.get()});
+      }
     }
   }
+  // Nothing is evicted meanwhile: only who refines does that.
+  for (const Work* work : published) {
+    const SurfaceNode& node = *work->node;
+    journal_->Write({static_cast<int32_t>(work->object), node.root, node.cell}, *node.payload);
+  }
   return next;
+}
+
+size_t SurfaceCache::Restore(std::span<KeptSurfaceCell> cells) {
+  std::lock_guard refining(refine_mutex_);
+  std::unique_lock lock(mutex_);
+  size_t restored = 0;
+  for (auto& [place, lights] : cells) {
+    if (!store_.Restore(static_cast<size_t>(place.object), place.patch, place.cell,
+                        std::move(lights), clock_, EvictionTarget(memory_bytes_)))
+      break;
+    ++restored;
+  }
+  return restored;
 }
 
 SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop,

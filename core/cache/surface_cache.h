@@ -10,8 +10,10 @@
 #include <limits>
 #include <mutex>
 #include <shared_mutex>
+#include <span>
 #include <vector>
 
+#include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
@@ -85,6 +87,11 @@ class SurfaceCache {
   // empty afterwards, and stays so. Before anybody asks this one.
   Adopted Adopt(SurfaceCache& former, const ChangeReach& reach);
 
+  // Tells of cells from now on; it must outlive the cache. Before anybody asks.
+  void SetJournal(CellJournal* journal) { journal_ = journal; }
+  // Takes kept cells back as far as there is room, of which it returns the number.
+  size_t Restore(std::span<KeptSurfaceCell> cells);
+
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
@@ -110,6 +117,7 @@ class SurfaceCache {
   const LightCertifier certifier_;
   const DiffuseSummer summer_;
   const double min_uses_;
+  CellJournal* journal_ = nullptr;
   std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:

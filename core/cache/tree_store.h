@@ -1,7 +1,7 @@
 // The trees of all objects of a scene, of one kind, and the bytes they hold. What surface_cache.h
 // and path_cache.h have in common; whoever owns a store guards it with a lock.
 //
-// A Tree has Node, Tree(const Object&), cells() (cell_tree.h) and CountBytes().
+// A Tree has Node, Cell, Tree(const Object&), cells() (cell_tree.h) and CountBytes().
 #pragma once
 
 #include <algorithm>
@@ -48,12 +48,25 @@ class TreeStore {
     for (size_t object = 0; object < trees_.size(); ++object) {
       if (!wanted_[object].exchange(false, std::memory_order_relaxed) || trees_[object]) continue;
       if (!may_grow(object)) continue;
-      auto tree = std::make_unique<Tree>(scene_.objects[object]);
-      const uint64_t bytes = tree->CountBytes();
-      if (byte_size_ + bytes > memory_bytes) return;
-      trees_[object] = std::move(tree);
-      byte_size_ += bytes;
+      if (!Plant(object, memory_bytes)) return;
     }
+  }
+
+  // Puts what somebody has kept of a cell back, into cells that are divided for it as far as need
+  // be; false when there is no room. What is no cell of the object's tree is left out.
+  template <class Payload>
+  bool Restore(size_t object, int root, const typename Tree::Cell& cell,
+               std::unique_ptr<const Payload> payload, uint32_t now, uint64_t memory_bytes) {
+    MakeIndex(memory_bytes);
+    if (trees_.empty() || (!trees_[object] && !Plant(object, memory_bytes))) return false;
+    auto& cells = trees_[object]->cells();
+    if (root >= cells.roots()) return true;
+    Node* node = &cells.Root(root);
+    for (int level = 0; level < cell.depth; ++level) {
+      if (node->IsLeaf() && !Divide(*node, now, memory_bytes)) return false;
+      node = &(*node->children)[static_cast<size_t>(cell.ChildAt(level))];
+    }
+    return node->payload || Publish(*node, std::move(payload), memory_bytes);
   }
 
   // Puts what is known of a cell into its node; false, and nothing done, when there is no room.
@@ -165,6 +178,15 @@ class TreeStore {
   }
 
  private:
+  // False when there is no room.
+  bool Plant(size_t object, uint64_t memory_bytes) {
+    auto tree = std::make_unique<Tree>(scene_.objects[object]);
+    const uint64_t bytes = tree->CountBytes();
+    if (byte_size_ + bytes > memory_bytes) return false;
+    trees_[object] = std::move(tree);
+    byte_size_ += bytes;
+    return true;
+  }
   void MakeIndex(uint64_t memory_bytes) {
     const size_t objects = scene_.objects.size();
     if (!trees_.empty() || objects * (sizeof(trees_[0]) + sizeof(wanted_[0])) > memory_bytes)

@@ -32,6 +32,7 @@ inline constexpr double kMaxHitDistance = 4096;
 class PathTree {
  public:
   using Node = PathNode;
+  using Cell = CellId;
 
   explicit PathTree(const Object& object)
       : reach_(Length(object.bounds.Extent()) + Length(object.bounds.Center())),

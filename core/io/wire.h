@@ -12,6 +12,7 @@
 #include "absl/strings/string_view.h"
 #include "core/audit/live_audit.h"
 #include "core/render/scene_host.h"
+#include "core/store/scene_pages.h"
 #include "linetree/v1/service.pb.h"
 
 namespace linetree {
@@ -63,6 +64,8 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message);
 v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host);
 
 v1::GetStatsReply::AuditStats AuditStatsToWire(const AuditCounts::Values& counts);
+
+v1::GetStatsReply::StoreStats StoreStatsToWire(const StoreCounts& counts);
 
 v1::SceneInfo SceneInfoToWire(const std::string& name, const Scene& scene, uint64_t cache_bytes);
 

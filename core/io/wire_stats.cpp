@@ -138,4 +138,17 @@ v1::GetStatsReply::AuditStats AuditStatsToWire(const AuditCounts::Values& counts
   return stats;
 }
 
+v1::GetStatsReply::StoreStats StoreStatsToWire(const StoreCounts& counts) {
+  v1::GetStatsReply::StoreStats stats;
+  stats.set_cells_restored(counts.cells_restored);
+  stats.set_cells_left(counts.cells_left);
+  stats.set_cells_written(counts.cells_written);
+  stats.set_cells_lost(counts.cells_lost);
+  stats.set_pages_odd(counts.pages_odd);
+  stats.set_waiting_bytes(counts.waiting_bytes);
+  stats.set_restore_ms(counts.restore_ms);
+  stats.set_index_bytes(counts.index_bytes);
+  return stats;
+}
+
 }  // namespace linetree

@@ -136,6 +136,12 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
       plan_(scene_->objects.size(), cache_options.always_ask) {}
 
+void SceneHost::Keep(std::shared_ptr<CellJournal> journal) {
+  journal_ = std::move(journal);
+  surfaces_.SetJournal(journal_.get());
+  paths_.SetJournal(journal_.get());
+}
+
 Adopted SceneHost::Adopt(SceneHost& former) {
   const SceneChange change = ChangeBetween(former.scene(), scene());
   const ChangeReach reach(scene(), change);

@@ -72,6 +72,10 @@ class SceneHost {
   // at every cell of an object that reflects or transmits.
   Adopted Adopt(SceneHost& former);
 
+  // Who is to hear of cells of surface trees and certified linetrees, and lives with this host.
+  // Before it answers anybody.
+  void Keep(std::shared_ptr<CellJournal> journal);
+
   // Bytes of both kinds of linetrees, samples and surface trees together, and the budget that they
   // share.
   uint64_t CacheBytes() const {
@@ -116,6 +120,7 @@ class SceneHost {
   mutable std::once_flag packets_made_;
   mutable std::unique_ptr<const PacketTracer> packets_;
   mutable std::atomic<uint64_t> packet_bytes_{0};  // 0: not made yet
+  std::shared_ptr<CellJournal> journal_;           // outlives the caches
   RadianceCache cache_;
   SurfaceCache surfaces_;
   PathCache paths_;

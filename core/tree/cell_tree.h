@@ -74,6 +74,9 @@ class CellTree {
     }
   }
 
+  int roots() const { return static_cast<int>(roots_.size()); }
+  Node& Root(int root) { return roots_[static_cast<size_t>(root)]; }
+
   // The smallest cell, marked as used at `now`.
   const Node& Find(int root, const Cell& deepest, uint32_t now) const {
     const Node& node = Leaf(root, deepest);

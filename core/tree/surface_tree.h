@@ -23,6 +23,7 @@ using SurfaceNode = CellTreeNode<SurfaceTraits>;
 class SurfaceTree {
  public:
   using Node = SurfaceNode;
+  using Cell = SurfaceCell;
 
   // Keeps a reference to the object.
   explicit SurfaceTree(const Object& object);

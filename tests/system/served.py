@@ -41,12 +41,16 @@ SCENE_TEXT = (pathlib.Path(__file__).parent / "ball.textproto").read_text()
 
 
 class Served:
-    """Use it in a with statement. `popen` goes to subprocess.Popen."""
+    """Use it in a with statement. `before` is a command that runs the program; `popen` goes to
+    subprocess.Popen."""
 
-    def __init__(self, *flags, listen="127.0.0.1:0", credentials=None, **popen):
+    def __init__(self, *flags, listen="127.0.0.1:0", credentials=None, before=(),
+                 **popen):
         # Leaving the block must not depend on what the test did to the process.
+        # Servers of tests know nothing of each other.
+        store = [] if "--data-dir" in flags else ["--no-store"]
         self.process = subprocess.Popen(
-            [PROGRAM, "--listen", listen, "--threads", "2", *flags],
+            [*before, PROGRAM, "--listen", listen, "--threads", "2", *store, *flags],
             **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, **popen})
         self.address = self._line("listening on ")
         self.http = self._line("http on ") if "--http" in flags else None

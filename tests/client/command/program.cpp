@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -79,6 +80,10 @@ ServerProcess::ServerProcess(std::vector<std::string> arguments) {
   FileActions actions;
   actions.Duplicate(pipe_ends[1], STDOUT_FILENO);
   actions.Open(STDERR_FILENO, log_.File("log"), O_WRONLY | O_CREAT);
+  // Servers of tests know nothing of each other.
+  if (std::find(arguments.begin(), arguments.end(), "--data-dir") == arguments.end()) {
+    arguments.insert(arguments.begin(), "--no-store");
+  }
   arguments.insert(arguments.begin(), {Program("linetreed"), "--listen", "127.0.0.1:0"});
   EXPECT_EQ(posix_spawn(&pid_, arguments[0].c_str(), actions.get(), nullptr, Argv(arguments).data(),
                         environ),
