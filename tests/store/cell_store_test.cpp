@@ -95,6 +95,11 @@ TEST_F(Keeping, GoesOnWithWhatIsThereAndWritesNothingTwice) {
   const auto store = Open();
   const auto host = test::HostOf(scene);
   EXPECT_EQ(Attach(*store, *host)->counts().cells_restored, cells);
+  EXPECT_EQ(test::CellsOf(*host), cells);
+  // A cache that knows them already stays as it is.
+  Attach(*store, *host);
+  EXPECT_EQ(test::CellsOf(*host), cells);
+  EXPECT_EQ(host->surfaces().ByteSize(), host->surfaces().CountBytes());
 }
 
 TEST_F(Keeping, OtherContentHasOtherCells) {

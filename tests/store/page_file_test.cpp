@@ -86,16 +86,29 @@ TEST(PageFile, SaysThatItIsFullAndIsAsItWas) {
   test::Random random(2);
   const auto file = Open(folder);
   ASSERT_TRUE(file.ok());
-  const std::vector<PageWrite> few = Pages(random, 1, 20);
-  ASSERT_TRUE((*file)->Write(few).ok());
-  EXPECT_TRUE(absl::IsResourceExhausted((*file)->Write(Pages(random, 100, 2000))));
-  EXPECT_EQ(AllOf(**file).size(), few.size());
+  absl::Status status;
+  size_t written = 0;
+  while ((status = (*file)->Write(Pages(random, written + 1, 4))).ok()) written += 4;
+  EXPECT_TRUE(absl::IsResourceExhausted(status)) << status;
+  EXPECT_TRUE(absl::IsResourceExhausted((*file)->Write(Pages(random, 1000, 2000))));
+  EXPECT_EQ(AllOf(**file).size(), written);
+  ASSERT_GT(written, 20U);
+  // There is room left for taking pages out.
   const auto erased =
       (*file)->Erase([](const PageKey& key, std::string_view) { return key.number <= 10; });
   ASSERT_TRUE(erased.ok()) << erased.status();
   EXPECT_EQ(*erased, 10U);
-  EXPECT_TRUE((*file)->Write(Pages(random, 100, 10)).ok());
-  EXPECT_EQ(AllOf(**file).size(), 20U);
+  EXPECT_TRUE((*file)->Write(Pages(random, 1000, 5)).ok());
+  EXPECT_EQ(AllOf(**file).size(), written - 5);
+  // To the last byte; and then all of it again at once.
+  for (uint64_t number = 2000; status.ok() || number == 2000;) {
+    std::vector<PageWrite> small;
+    while (small.size() < 200) small.push_back({{kScene, 5, number++}, "small"});
+    status = (*file)->Write(small);
+  }
+  const auto all = (*file)->Erase([](const PageKey&, std::string_view) { return true; });
+  ASSERT_TRUE(all.ok()) << all.status();
+  EXPECT_TRUE((*file)->Write(Pages(random, 1, static_cast<int>(written) - 5)).ok());
 }
 
 TEST(PageFile, FindsNothingWhereNothingIs) {
