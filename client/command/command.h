@@ -14,6 +14,8 @@ namespace linetree {
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;
+// What was measured is not what was wanted (load --objective).
+inline constexpr int kExitMissed = 3;
 
 // Does the work once the command line has been parsed; returns the exit status, or an error that
 // main() reports.
