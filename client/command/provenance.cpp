@@ -88,4 +88,16 @@ nlohmann::json ProvenanceJson(const Provenance& provenance) {
           {"version", provenance.version}};
 }
 
+std::optional<Provenance> ProvenanceFromJson(const nlohmann::json& json) {
+  Provenance provenance;
+  for (auto& [name, value] : {std::pair("command", &provenance.command),
+                              {"machine", &provenance.machine},
+                              {"date", &provenance.date},
+                              {"version", &provenance.version}}) {
+    if (!json.is_object() || !json.contains(name) || !json[name].is_string()) return std::nullopt;
+    *value = json[name].get<std::string>();
+  }
+  return provenance;
+}
+
 }  // namespace linetree

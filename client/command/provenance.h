@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 namespace linetree {
@@ -19,5 +20,7 @@ struct Provenance {
 // Of what this process does now. An empty command: the process's own command line.
 Provenance ProvenanceOf(std::string command = "");
 nlohmann::json ProvenanceJson(const Provenance& provenance);
+// What ProvenanceJson has made; nothing for anything else.
+std::optional<Provenance> ProvenanceFromJson(const nlohmann::json& json);
 
 }  // namespace linetree
