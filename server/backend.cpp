@@ -305,7 +305,8 @@ absl::StatusOr<v1::GetStatsReply> Backend::GetStats(const v1::GetStatsRequest& r
 }
 
 absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest& request,
-                                                      const CancelToken& cancel) {
+                                                      const CancelToken& cancel,
+                                                      FrameTimer& timer) {
   auto scene = scenes_.Find(request.scene(), "scene");
   if (!scene.ok()) return scene.status();
   auto options = RenderOptionsFromWire(request.options(), options_.defaults, "");
@@ -315,8 +316,10 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
   if (!batch.ok()) return batch.status();
   scene->answers->Add(*batch);
   audit_.Offer({scene->name, scene->host, scene->audit}, rays, *options, *batch);
+  timer.Enter(FrameTimer::Stage::kEncode);
   v1::TraceRaysReply reply = RayBatchToWire(*batch, scene->host->scene().version);
   reply.set_max_relative_error(options->max_relative_error);
+  timer.Enter(FrameTimer::Stage::kElsewhere);
   return reply;
 }
 

@@ -18,6 +18,7 @@
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 #include "server/budget.h"
+#include "server/frame_timer.h"
 #include "server/job_queue.h"
 #include "server/metrics.h"
 #include "server/open_calls.h"
@@ -53,8 +54,9 @@ class Backend {
                                                    const CancelToken& cancel);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
   v1::GetLimitsReply GetLimits() const;
+  // Leaves the timer where the answers have become a message.
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
-                                               const CancelToken& cancel);
+                                               const CancelToken& cancel, FrameTimer& timer);
 
   // A frame that has been checked and has its memory set aside; nothing is rendered yet.
   struct PreparedFrame {

@@ -83,6 +83,8 @@ void FlyCall::Advance() {
 
 void FlyCall::SubmitNext() {
   working_ = true;
+  timer_ = {};
+  timer_.Enter(FrameTimer::Stage::kQueue);
   // At most one job per flight, and flights are counted: these jobs need no bound of their own.
   const auto job = backend_.renders().Submit(
       {.session = absl::StrCat("flight ", token_.session),
@@ -101,6 +103,7 @@ void FlyCall::Run(const absl::Status& turn) {
     auto step = plan_.Next();
     if (!step.ok()) return End(step.status());
     step_ = *std::move(step);
+    timer_.Enter(FrameTimer::Stage::kRender);
     cancel_.emplace();
     if (gone_) cancel_->Cancel();
     ReadMore();
@@ -125,10 +128,12 @@ absl::StatusOr<FrameChunks> FlyCall::Render() {
   frame_.emplace(*std::move(prepared));
   auto frame = backend_.Render(*frame_, *cancel_);
   if (!frame.ok()) return frame.status();
+  timer_.Enter(FrameTimer::Stage::kEncode);
   return FrameChunks::Make(*std::move(frame), frame_->format);
 }
 
 void FlyCall::SendNext() {
+  timer_.Enter(FrameTimer::Stage::kEncode);
   v1::FlyReply reply;
   if (!chunks_->Next(reply.mutable_chunk())) {
     chunks_.reset();
@@ -141,7 +146,10 @@ void FlyCall::SendNext() {
   reply.set_frame_number(token_.frames);
   if (reply.chunk().has_end()) {
     reply.set_skipped(step_.skipped);
-    reply.mutable_chunk()->mutable_end()->set_request_id(info_.request_id);
+    v1::FrameEnd& end = *reply.mutable_chunk()->mutable_end();
+    end.set_request_id(info_.request_id);
+    timer_.Enter(FrameTimer::Stage::kElsewhere);
+    *end.mutable_timing() = timer_.ToWire();
   }
   Send(reply);
 }
@@ -149,6 +157,7 @@ void FlyCall::SendNext() {
 void FlyCall::Send(const v1::FlyReply& reply) {
   if (!std::exchange(has_sent_, true)) SendIdBack(info_, context_);
   sending_ = Serialize(reply);
+  timer_.Enter(FrameTimer::Stage::kElsewhere);
   send_ = backend_.sends().Begin([this] { context_->TryCancel(); });
   StartWrite(&sending_);
 }

@@ -14,6 +14,7 @@
 #include "server/backend.h"
 #include "server/call_info.h"
 #include "server/flight_plan.h"
+#include "server/frame_timer.h"
 #include "server/resume_token.h"
 
 namespace linetree {
@@ -87,6 +88,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
 
   // Of the frame that is being worked on.
   FlightPlan::Step step_;
+  FrameTimer timer_;
   std::optional<CancelToken> cancel_;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;

@@ -25,6 +25,7 @@ absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
   auto frame = backend_.PrepareFrame(message, "");
   if (!frame.ok()) return frame.status();
   frame_ = *std::move(frame);
+  timer_.Enter(FrameTimer::Stage::kQueue);
   const auto job = backend_.renders().Submit(
       {.session = info_.session, .work_rays = EstimatedRays(message), .deadline = info_.deadline},
       [call = self_](const absl::Status& turn) { call->Run(turn); });
@@ -33,6 +34,7 @@ absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
 }
 
 void FrameCall::Run(const absl::Status& turn) {
+  timer_.Enter(FrameTimer::Stage::kRender);
   const absl::Status status = turn.ok() ? Render() : turn;
   if (!status.ok()) return End(status);
   SendIdBack(info_, context_);
@@ -42,6 +44,7 @@ void FrameCall::Run(const absl::Status& turn) {
 absl::Status FrameCall::Render() {
   auto frame = backend_.Render(*frame_, cancel_);
   if (!frame.ok()) return frame.status();
+  timer_.Enter(FrameTimer::Stage::kEncode);
   auto chunks = FrameChunks::Make(*std::move(frame), frame_->format);
   if (chunks.ok()) chunks_ = *std::move(chunks);
   return chunks.status();
@@ -53,12 +56,18 @@ void FrameCall::OnCancel() {
 }
 
 void FrameCall::SendNext() {
+  timer_.Enter(FrameTimer::Stage::kEncode);
   v1::FrameChunk chunk;
   if (!chunks_->Next(&chunk)) {
     return End(absl::OkStatus());
   }
-  if (chunk.has_end()) chunk.mutable_end()->set_request_id(info_.request_id);
+  if (chunk.has_end()) {
+    timer_.Enter(FrameTimer::Stage::kElsewhere);
+    chunk.mutable_end()->set_request_id(info_.request_id);
+    *chunk.mutable_end()->mutable_timing() = timer_.ToWire();
+  }
   sending_ = Serialize(chunk);
+  timer_.Enter(FrameTimer::Stage::kElsewhere);
   send_ = backend_.sends().Begin([this] { context_->TryCancel(); });
   StartWrite(&sending_);
 }

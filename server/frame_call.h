@@ -10,6 +10,7 @@
 #include "core/io/wire_frame.h"
 #include "server/backend.h"
 #include "server/call_info.h"
+#include "server/frame_timer.h"
 
 namespace linetree {
 
@@ -42,6 +43,7 @@ class FrameCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   const std::optional<OpenCalls::Share> open_ = backend_.open_calls().Enter();
   JobId job_ = 0;
   StallWatch::Id send_ = 0;
+  FrameTimer timer_;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
   grpc::ByteBuffer sending_;

@@ -153,11 +153,16 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
   const CallInfo info = ReadCallInfo(context);
   const auto rays = CheckBatch(*request, backend_.limits());
   if (!rays.ok()) return Finish(context, info, rays.status());
-  const auto work = [this, request, id = info.request_id](const CancelToken& cancel) {
+  const auto timer = std::make_shared<FrameTimer>();
+  timer->Enter(FrameTimer::Stage::kQueue);
+  const auto work = [this, request, timer, id = info.request_id](const CancelToken& cancel) {
+    timer->Enter(FrameTimer::Stage::kRender);
     return Handle<v1::TraceRaysRequest>(*request, backend_.limits().max_batch_bytes,
                                         [&](const v1::TraceRaysRequest& r) {
-                                          auto answer = backend_.TraceRays(r, cancel);
-                                          if (answer.ok()) answer->set_request_id(id);
+                                          auto answer = backend_.TraceRays(r, cancel, *timer);
+                                          if (!answer.ok()) return answer;
+                                          answer->set_request_id(id);
+                                          *answer->mutable_timing() = timer->ToWire();
                                           return answer;
                                         });
   };

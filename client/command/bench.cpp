@@ -14,6 +14,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   AddBenchPaper(*app, commands);
   AddBenchPeers(*app, commands);
   AddBenchRays(*app, commands);
+  AddBenchReport(*app, commands);
   AddBenchSpeed(*app, commands);
 }
 

@@ -10,6 +10,7 @@
 #include "client/command/flags.h"
 #include "client/command/output.h"
 #include "client/command/progress_bar.h"
+#include "client/command/scene_files.h"
 #include "client/command/table.h"
 #include "core/io/load_scene.h"
 
@@ -36,23 +37,6 @@ struct BenchCertifyFlags {
     return std::find(parts.begin(), parts.end(), part) != parts.end();
   }
 };
-
-// All scenes of the folder, in the order of their names.
-absl::StatusOr<std::vector<std::string>> ScenesIn(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const std::string& part : {folder, folder + "/spd"}) {
-    for (const auto& entry : std::filesystem::directory_iterator(part, error)) {
-      const std::string extension = entry.path().extension();
-      if (extension == ".textproto" || extension == ".nff") files.push_back(entry.path());
-    }
-  }
-  if (files.empty()) {
-    return absl::NotFoundError(absl::StrCat(folder, ": expected a folder with scenes"));
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 std::vector<SparseFamily> FamiliesOf(const std::vector<std::string>& names) {
   std::vector<SparseFamily> families;

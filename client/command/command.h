@@ -14,6 +14,8 @@ namespace linetree {
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailure = 1;
 inline constexpr int kExitUsage = 2;
+// What was measured is not what was wanted (load --objective, bench report).
+inline constexpr int kExitMissed = 3;
 
 // Does the work once the command line has been parsed; returns the exit status, or an error that
 // main() reports.
@@ -47,6 +49,7 @@ void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 void AddBenchPeers(CLI::App& bench, Commands& commands);
 void AddBenchRays(CLI::App& bench, Commands& commands);
+void AddBenchReport(CLI::App& bench, Commands& commands);
 void AddBenchSpeed(CLI::App& bench, Commands& commands);
 
 // Writes "linetree: message" as one line to standard error and returns `exit_status`.

@@ -1,28 +1,26 @@
-// linetree load: many clients that fly one path at the same time.
-#include <atomic>
-#include <chrono>
+// linetree load: many clients that fly camera paths at the same time.
+#include <fstream>
 #include <iostream>
 #include <memory>
-#include <mutex>
-#include <thread>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "client/command/command.h"
 #include "client/command/flags.h"
-#include "client/command/load_report.h"
+#include "client/command/load_page.h"
+#include "client/command/load_run.h"
 #include "client/command/output.h"
 #include "client/command/progress_bar.h"
 #include "client/command/session.h"
-#include "client/command/table.h"
 #include "core/io/atomic_file.h"
 #include "core/io/camera_path.h"
+#include "core/io/read_file.h"
 
 namespace linetree {
 namespace {
 
 constexpr int kMaxClients = 1024;
+constexpr double kMaxRate = 1e5;  // frames per second
+constexpr uint64_t kMaxStatsBytes = uint64_t{64} << 20;
 
 struct LoadFlags {
   ConnectionFlags connection;
@@ -30,158 +28,228 @@ struct LoadFlags {
   SizeFlags size{256, 256};
   RenderOptions options;
   Sampling sampling;
-  std::string path;
+  std::vector<std::string> paths;
+  std::optional<double> overlap;
   int clients = 4;
-  int frames = 0;  // of each client; 0: as many as the path has, or no bound with a duration
+  size_t frames = 0;  // of each client; 0: as many as its piece has, or no bound with a duration
   double duration_s = 0;
-  std::string plot;
-  std::string stats;
+  size_t warm_up_frames = 0;
+  std::optional<double> rate;
+  ArrivalOptions arrivals;
+  bool stream = false;
+  std::vector<LoadObjective> objectives;
+  std::string compare;
+  std::vector<std::string> plots;  // .svg
+  std::string stats, csv, html;
   bool quiet = false;
 };
 
-// What the clients share. Frames go round the path; client c starts c/N of it further on.
-class LoadTest {
- public:
-  LoadTest(const LoadFlags& flags, std::string scene, std::vector<Camera> cameras)
-      : flags_(flags), scene_(std::move(scene)), cameras_(std::move(cameras)) {
-    frames_each_ = flags.frames;
-    if (frames_each_ == 0 && flags.duration_s == 0) {
-      frames_each_ = static_cast<int>(cameras_.size());
-    }
+absl::StatusOr<LoadPlan> PlanOf(const LoadFlags& flags) {
+  LoadPlan plan{.frames_each = flags.frames,
+                .duration_s = flags.duration_s,
+                .warm_up_frames = flags.warm_up_frames,
+                .stream = flags.stream};
+  plan.frame.width = flags.size.width;
+  plan.frame.height = flags.size.height;
+  plan.frame.options = flags.options;
+  plan.frame.sampling = flags.sampling;
+  std::vector<size_t> path_frames;
+  for (const std::string& file : flags.paths) {
+    const absl::StatusOr<CameraPath> path = LoadCameraPath(file);
+    if (!path.ok()) return path.status();
+    absl::StatusOr<std::vector<Camera>> cameras = SampleCameraPath(*path, path->frames);
+    if (!cameras.ok()) return cameras.status();
+    path_frames.push_back(cameras->size());
+    plan.paths.push_back(*std::move(cameras));
   }
-
-  // One client each on a thread of its own. The first error ends the test.
-  absl::StatusOr<std::vector<LoadSample>> RunClients(
-      const std::vector<std::unique_ptr<Client>>& clients, Client* shared) {
-    std::vector<std::thread> threads;
-    for (int c = 0; c < flags_.clients; ++c) {
-      Client* client = shared != nullptr ? shared : clients[static_cast<size_t>(c)].get();
-      threads.emplace_back([this, c, client] { Fly(c, *client); });
-    }
-    for (std::thread& thread : threads) thread.join();
-    if (!error_.ok()) return error_;
-    return std::move(samples_);
+  plan.pieces = PlanPieces(static_cast<size_t>(flags.clients), path_frames, flags.overlap);
+  if (flags.rate) {
+    plan.arrivals = flags.arrivals;
+    plan.arrivals->rate = *flags.rate;
   }
+  return plan;
+}
 
- private:
-  using Clock = std::chrono::steady_clock;
-
-  double Now() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
-
-  bool Goes(int frame) const {
-    return !stop_ && (frames_each_ == 0 || frame < frames_each_) &&
-           (flags_.duration_s == 0 || Now() < flags_.duration_s);
-  }
-
-  void Fly(int number, Client& client) {
-    const size_t offset =
-        static_cast<size_t>(number) * cameras_.size() / static_cast<size_t>(flags_.clients);
-    for (int frame = 0; Goes(frame); ++frame) {
-      const Camera& camera = cameras_[(offset + static_cast<size_t>(frame)) % cameras_.size()];
-      LoadSample sample{.start_s = Now()};
-      const absl::StatusOr<Frame> answer = client.RenderFrame(
-          scene_, {camera, flags_.size.width, flags_.size.height, flags_.options, flags_.sampling},
-          "", false, {});
-      sample.end_s = Now();
-      const std::lock_guard lock(mutex_);
-      if (!answer.ok()) {
-        if (error_.ok()) error_ = answer.status();
-        stop_ = true;
-        return;
-      }
-      sample.hits = answer->stats.interpolated + answer->stats.replayed;
-      sample.misses = answer->stats.traced - answer->stats.replayed;
-      samples_.push_back(sample);
-      ShowProgress(sample.end_s);
-    }
-  }
-
-  void ShowProgress(double now_s) {
-    const double by_time = flags_.duration_s > 0 ? now_s / flags_.duration_s : 0;
-    const double all = static_cast<double>(frames_each_) * flags_.clients;
-    const double by_frames = all > 0 ? static_cast<double>(samples_.size()) / all : 0;
-    bar_.Show(std::max(by_time, by_frames));
-  }
-
-  const LoadFlags& flags_;
-  const std::string scene_;
-  const std::vector<Camera> cameras_;
-  int frames_each_ = 0;  // 0: until the time is up
-  const Clock::time_point began_ = Clock::now();
-  std::atomic<bool> stop_{false};
-  std::mutex mutex_;
-  std::vector<LoadSample> samples_;  // guarded by mutex_
-  absl::Status error_;               // guarded by mutex_
-  ProgressBar bar_{!flags_.quiet && IsTerminal(), "load"};
-};
-
-absl::StatusOr<std::vector<LoadSample>> Measure(const LoadFlags& flags) {
-  const absl::StatusOr<CameraPath> path = LoadCameraPath(flags.path);
-  if (!path.ok()) return path.status();
-  const absl::StatusOr<std::vector<Camera>> cameras = SampleCameraPath(*path, path->frames);
-  if (!cameras.ok()) return cameras.status();
-  absl::StatusOr<Session> session = OpenSession(flags.connection, flags.scene);
-  if (!session.ok()) return session.status();
-  // In this process all clients share the cache through one object; against a server each has a
-  // connection of its own.
+// In this process all clients share the cache through one object; against a server each has a
+// connection of its own. A refusal counts, so nothing is tried again in silence.
+absl::StatusOr<std::vector<std::unique_ptr<Client>>> ConnectAll(const LoadFlags& flags) {
   std::vector<std::unique_ptr<Client>> clients;
-  for (int c = 0; c < flags.clients && !flags.connection.local; ++c) {
-    absl::StatusOr<std::unique_ptr<Client>> client = Connect(flags.connection);
+  if (flags.connection.local) return clients;
+  absl::StatusOr<ClientOptions> options = ReadClientOptions(flags.connection);
+  if (!options.ok()) return options.status();
+  options->retry.max_attempts = 1;
+  for (int c = 0; c < flags.clients; ++c) {
+    absl::StatusOr<std::unique_ptr<Client>> client =
+        Client::Connect(flags.connection.server, *options);
     if (!client.ok()) return client.status();
     clients.push_back(*std::move(client));
   }
-  LoadTest test(flags, session->scene.name(), *cameras);
-  return test.RunClients(clients, flags.connection.local ? session->client.get() : nullptr);
+  return clients;
 }
 
-void Print(const LoadFlags& flags, const LoadFigures& figures) {
-  std::cout << absl::StrFormat("clients     %d\nframes      %s in %.2f s: %.2f frames/s\n",
-                               flags.clients, Grouped(figures.frames), figures.seconds,
-                               figures.frames_per_s)
-            << absl::StrFormat("latency ms  p50 %.1f  p90 %.1f  p99 %.1f  max %.1f\n",
-                               figures.p50_ms, figures.p90_ms, figures.p99_ms, figures.max_ms)
-            << "hit rate    " << Percent(figures.hit_rate) << "\n\n";
-  Table table({{"seconds", Align::kRight}, {"frames", Align::kRight}, {"hit rate", Align::kRight}});
-  for (const LoadBucket& bucket : figures.buckets) {
-    if (bucket.frames == 0) continue;
-    table.AddRow(
-        {absl::StrFormat("%.2f", bucket.to_s), Grouped(bucket.frames), Percent(bucket.hit_rate)});
+absl::StatusOr<std::vector<LoadPhase>> Measure(const LoadFlags& flags) {
+  absl::StatusOr<LoadPlan> plan = PlanOf(flags);
+  if (!plan.ok()) return plan.status();
+  const absl::StatusOr<Session> session = OpenSession(flags.connection, flags.scene);
+  if (!session.ok()) return session.status();
+  const auto own = ConnectAll(flags);
+  if (!own.ok()) return own.status();
+  std::vector<Client*> clients(plan->pieces.size(), session->client.get());
+  for (size_t c = 0; c < own->size(); ++c) clients[c] = (*own)[c].get();
+  plan->scene = session->scene.name();
+  ProgressBar bar(!flags.quiet && IsTerminal(), "load");
+  return RunLoad(*plan, clients, [&bar](double share) { bar.Show(share); });
+}
+
+// The run to compare with, read before the new one begins.
+absl::StatusOr<nlohmann::json> ReadStats(const std::string& path) {
+  const absl::StatusOr<std::string> text = ReadFileAtMost(path, kMaxStatsBytes);
+  if (!text.ok()) return text.status();
+  nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const absl::Status status = CompareLoads(json, {}).status();
+  if (status.ok()) return json;
+  return absl::Status(status.code(), absl::StrCat("--compare: ", path, ": ", status.message()));
+}
+
+absl::Status WriteFiles(const LoadFlags& flags, const LoadResult& result) {
+  std::vector<std::pair<std::string, std::string>> files;  // name, content
+  if (!flags.stats.empty()) {
+    nlohmann::json json = LoadResultJson(result);
+    json["clients"] = flags.clients;
+    json["epsilon"] = flags.options.max_relative_error;
+    files.emplace_back(flags.stats, json.dump(2) + "\n");
   }
-  std::cout << table.ToString();
+  if (!flags.csv.empty()) files.emplace_back(flags.csv, LoadCsv(result.phases));
+  if (!flags.html.empty()) files.emplace_back(flags.html, LoadHtml(result));
+  for (const std::string& plot : flags.plots) {
+    files.emplace_back(plot, SvgPlots(LoadResultPlots(result)));
+  }
+  for (const auto& [name, content] : files) {
+    if (absl::Status status = WriteFileAtomically(name, content); !status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<int> Load(const LoadFlags& flags) {
-  std::vector<std::string> files;
-  for (const std::string& file : {flags.plot, flags.stats}) {
+  std::vector<std::string> files = flags.plots;
+  for (const std::string& file : {flags.stats, flags.csv, flags.html}) {
     if (!file.empty()) files.push_back(file);
   }
   if (absl::Status status = CheckFolders(files); !status.ok()) return status;
-  const absl::StatusOr<std::vector<LoadSample>> samples = Measure(flags);
-  if (!samples.ok()) return samples.status();
-  const LoadFigures figures = SummarizeLoad(*samples);
-  if (!flags.quiet) Print(flags, figures);
-  if (!flags.stats.empty()) {
-    nlohmann::json json = LoadJson(figures);
-    json["clients"] = flags.clients;
-    json["epsilon"] = flags.options.max_relative_error;
-    if (absl::Status status = WriteJson(json, flags.stats); !status.ok()) return status;
-  }
-  if (!flags.plot.empty()) {
-    const std::string title = absl::StrCat(flags.scene.scene, ", ", flags.clients, " clients");
-    absl::Status status = WriteFileAtomically(flags.plot, SvgPlots(LoadPlots(figures, title)));
-    if (!status.ok()) return status;
-  }
-  return kExitOk;
+  absl::StatusOr<nlohmann::json> before = nlohmann::json();
+  if (!flags.compare.empty()) before = ReadStats(flags.compare);
+  if (!before.ok()) return before.status();
+  absl::StatusOr<std::vector<LoadPhase>> phases = Measure(flags);
+  if (!phases.ok()) return phases.status();
+  LoadResult result{.title = absl::StrCat(flags.scene.scene, ", ", flags.clients, " clients"),
+                    .phases = *std::move(phases),
+                    .objectives = flags.objectives,
+                    .provenance = ProvenanceOf()};
+  for (const LoadPhase& phase : result.phases) result.figures.push_back(SummarizeLoad(phase));
+  if (!flags.compare.empty()) result.changes = *CompareLoads(*before, result.measured());
+  if (!flags.quiet) std::cout << "clients     " << flags.clients << "\n" << LoadText(result);
+  if (absl::Status status = WriteFiles(flags, result); !status.ok()) return status;
+  return result.MeetsObjectives() ? kExitOk : kExitMissed;
+}
+
+void AddPathFlags(CLI::App& app, LoadFlags& flags) {
+  app.add_option("--path,--paths", flags.paths,
+                 "Camera paths, which the clients take in turn; FILE,FILE or given again")
+      ->type_name("FILE")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->required()
+      ->group("View");
+  app.add_option("--overlap", flags.overlap,
+                 "How much of their pieces two neighbours on a path share:\n"
+                 "0: pieces join end to end and cover the path once;\n"
+                 "1: everybody flies the whole path from its beginning;\n"
+                 "left out: everybody flies the whole path, starts are spread over it")
+      ->type_name("F")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("View");
+}
+
+// When frames begin.
+void AddLoopFlags(CLI::App& app, LoadFlags& flags) {
+  auto* duration = app.add_option("--duration", flags.duration_s, "Begin no frame later than this")
+                       ->type_name("SECONDS")
+                       ->check(CLI::PositiveNumber)
+                       ->group("Load");
+  app.add_option("--warm-up", flags.warm_up_frames,
+                 "First fly N frames of each client, reported apart; then all begin again")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->group("Load");
+  auto* rate =
+      app.add_option("--rate", flags.rate,
+                     "Open loop: so many frames begin each second, whatever came of the others,\n"
+                     "each at a client that is free; latency counts from when it was to begin")
+          ->type_name("FRAMES_PER_S")
+          ->check(CLI::Range(1e-3, kMaxRate))
+          ->group("Load");
+  const std::map<std::string, ArrivalKind> kinds = {{"fixed", ArrivalKind::kFixed},
+                                                    {"poisson", ArrivalKind::kPoisson}};
+  app.add_option("--arrivals", flags.arrivals.kind,
+                 "fixed: at equal steps; poisson: independent of each other")
+      ->transform(CLI::CheckedTransformer(kinds))
+      ->type_name("KIND")
+      ->default_str("fixed")
+      ->needs(rate)
+      ->group("Load");
+  app.add_option("--seed", flags.arrivals.seed, "Of --arrivals poisson")
+      ->type_name("SEED")
+      ->capture_default_str()
+      ->needs(rate)
+      ->group("Load");
+  app.add_flag("--stream", flags.stream,
+               "A flight for each client in place of single frames; a frame's latency is the time\n"
+               "since the one before it, and the server's times are of frames sent ahead")
+      ->excludes(rate)
+      ->excludes(duration)
+      ->group("Load");
+}
+
+void AddGoalFlags(CLI::App& app, LoadFlags& flags) {
+  app.add_option_function<std::vector<std::string>>(
+         "--objective",
+         [&flags](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             const auto objective = ParseObjective(text);
+             if (!objective.ok()) {
+               throw CLI::ValidationError("--objective", std::string(objective.status().message()));
+             }
+             flags.objectives.push_back(*objective);
+           }
+         },
+         "What the measured frames are to reach, such as p99_ms=50 or hit_rate=0.8 (which is at\n"
+         "least, not at most); may be given again. A name that is none lists them all")
+      ->type_name("NAME=NUMBER")
+      ->allow_extra_args(false)
+      ->group("Goals");
+  app.add_option("--compare", flags.compare, "Show what has changed since the run of this --stats")
+      ->type_name("FILE")
+      ->group("Goals");
+}
+
+void AddFileFlags(CLI::App& app, LoadFlags& flags) {
+  app.add_option("-o,--output", flags.plots, "Plots over time and of latencies, .svg")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->check(HasExtension({".svg"}))
+      ->group("Output");
+  AddStatsFlag(app, flags.stats);
+  app.add_option("--csv", flags.csv, "A line for each frame")->type_name("FILE")->group("Output");
+  app.add_option("--html", flags.html, "One page with everything, plots included")
+      ->type_name("FILE")
+      ->group("Output");
+  AddQuietFlag(app, flags.quiet);
 }
 
 void AddFlags(CLI::App& app, LoadFlags& flags) {
   AddConnectionFlags(app, flags.connection);
   AddSceneFlags(app, flags.scene);
-  app.add_option("--path", flags.path,
-                 "Camera path that every client flies, each from another place")
-      ->type_name("FILE")
-      ->required()
-      ->group("View");
+  AddPathFlags(app, flags);
   AddSizeFlags(app, flags.size);
   AddOptionsFlags(app, flags.options);
   AddSamplingFlags(app, flags.sampling);
@@ -191,33 +259,34 @@ void AddFlags(CLI::App& app, LoadFlags& flags) {
       ->capture_default_str()
       ->group("Load");
   app.add_option("--frames", flags.frames,
-                 "Frames of each client; left out: once along the path, or until the time is up")
+                 "Frames of each client; left out: once along its piece, or until the time is up")
       ->type_name("M")
       ->check(CLI::PositiveNumber)
       ->group("Load");
-  app.add_option("--duration", flags.duration_s, "Begin no frame later than this")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
-      ->group("Load");
-  app.add_option("-o,--output", flags.plot, "Plot of hit rate and throughput over time, .svg")
-      ->type_name("FILE")
-      ->check(HasExtension({".svg"}))
-      ->group("Output");
-  AddStatsFlag(app, flags.stats);
-  AddQuietFlag(app, flags.quiet);
+  AddLoopFlags(app, flags);
+  AddGoalFlags(app, flags);
+  AddFileFlags(app, flags);
 }
 
 }  // namespace
 
 void AddLoad(CLI::App& parent, Commands& commands) {
   auto flags = std::make_shared<LoadFlags>();
-  CLI::App* app = parent.add_subcommand("load", "Many clients that fly one path at the same time");
+  CLI::App* app =
+      parent.add_subcommand("load", "Many clients that fly camera paths at the same time");
   AddFlags(*app, *flags);
   app->footer(
+      "Frames that the server refuses for want of room are counted and do not end the test; other "
+      "errors do.\nlate: no client was free when a frame was to begin; not begun: nor before the "
+      "time was up.\n"
+      "Exit status: 0; 1 on errors; 2 for a wrong command line; 3 when an objective was missed.\n\n"
       "Examples:\n"
       "  linetree load --scene room --path scenes/paths/room_walk.textproto --clients 8\n"
+      "  linetree load --scene room --path scenes/paths/room_walk.textproto --clients 16 "
+      "--overlap 0.5 --warm-up 8 --rate 30 --arrivals poisson --duration 60 --objective p99_ms=100 "
+      "--html load.html --stats load.json\n"
       "  linetree load --local --scene scenes/face.textproto --path "
-      "scenes/paths/face_walk.textproto --duration 20 --stats load.json -o load.svg");
+      "scenes/paths/face_walk.textproto --duration 20 --stats new.json --compare load.json");
   commands.push_back({app, [flags] { return Load(*flags); }});
 }
 

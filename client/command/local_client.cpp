@@ -83,6 +83,7 @@ absl::StatusOr<Frame> LocalClient::RenderFrame(const std::string& scene,
     resolved.camera = *camera;
   }
   absl::StatusOr<Frame> frame = (*host)->RenderFrame(resolved, pool_, nullptr, progress);
+  if (frame.ok()) frame->timing.render_ms = frame->stats.wall_ms;
   if (frame.ok() && !all_layers) {
     frame->object.clear();
     frame->source.clear();

@@ -76,6 +76,14 @@ std::pair<Scale, Scale> ScalesOf(const Plot& plot) {
       y.Add(py);
     }
   }
+  const auto add_bands = [](const PlotAxis& axis, Extent& extent) {
+    for (const PlotBand& band : axis.bands) {
+      if (IsDrawable(band.from, axis)) extent.Add(band.from);
+      if (IsDrawable(band.to, axis)) extent.Add(band.to);
+    }
+  };
+  add_bands(plot.x, x);
+  add_bands(plot.y, y);
   return {ScaleOf(plot.x, x), ScaleOf(plot.y, y)};
 }
 
@@ -87,6 +95,8 @@ class PlotDrawing {
   }
 
   std::string Draw() {
+    for (const PlotBand& band : plot_.x.bands) DrawBand(band, x_, /*upright=*/true);
+    for (const PlotBand& band : plot_.y.bands) DrawBand(band, y_, /*upright=*/false);
     DrawAxes();
     for (size_t i = 0; i < plot_.series.size(); ++i) {
       DrawSeries(plot_.series[i], kColors[i % kColors.size()]);
@@ -133,6 +143,30 @@ class PlotDrawing {
     const double middle = top_ + kInnerHeight / 2;
     Text(20, middle, "middle", plot_.y.label,
          absl::StrFormat(" transform=\"rotate(-90 20 %.1f)\"", middle));
+  }
+
+  // What of it lies on the scale.
+  void DrawBand(const PlotBand& band, const Scale& scale, bool upright) {
+    const double from = std::max(band.from, scale.min), to = std::min(band.to, scale.max);
+    if (from > to) return;
+    double left = kLeft, right = kLeft + kInnerWidth;
+    double top = top_, bottom = top_ + kInnerHeight;
+    if (upright) {
+      left = X(from);
+      right = X(to);
+    } else {
+      top = Y(to);
+      bottom = Y(from);
+    }
+    if (from < to) {
+      absl::StrAppendFormat(
+          &svg_, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#f3ead3\"/>\n",
+          left, top, right - left, bottom - top);
+    } else {
+      Line(left, top, right, bottom, "stroke=\"#b08030\" stroke-dasharray=\"5 3\"");
+    }
+    Text(upright ? left + 4 : kLeft + 6, top + (upright ? 14 : -4), "start", band.label,
+         " fill=\"#8a6420\" font-size=\"11\"");
   }
 
   void DrawSeries(const PlotSeries& series, const char* color) {

@@ -8,13 +8,22 @@
 
 namespace linetree {
 
+// A range of an axis that is marked for reference, right across the plot; a line where it has no
+// extent.
+struct PlotBand {
+  double from = 0;
+  double to = 0;
+  std::string label{};
+};
+
 struct PlotAxis {
   std::string label{};
   bool logarithmic = false;
-  // Where not given, the axis spans the data; a linear axis of data that is nowhere negative starts
-  // at 0.
+  // Where not given, the axis spans the data and its bands; a linear axis of data that is nowhere
+  // negative starts at 0.
   std::optional<double> min{};
   std::optional<double> max{};
+  std::vector<PlotBand> bands{};
 };
 
 struct PlotSeries {

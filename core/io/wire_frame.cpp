@@ -171,6 +171,7 @@ FrameAssembler::FrameAssembler(int width, int height, bool all_layers) : all_lay
 
 absl::Status FrameAssembler::Add(const v1::FrameChunk& chunk) {
   if (complete_) return absl::DataLossError("a chunk came after the end of its frame");
+  frame_.wire_bytes += chunk.ByteSizeLong();
   switch (chunk.content_case()) {
     case v1::FrameChunk::kTile:
       return AddTile(chunk.tile());
@@ -245,6 +246,7 @@ absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
   frame_.max_relative_error = end.max_relative_error();
   frame_.lane_rounding = end.lane_rounding();
   frame_.white = end.white();
+  frame_.timing = {end.timing().queue_ms(), end.timing().render_ms(), end.timing().encode_ms()};
   complete_ = true;
   return absl::OkStatus();
 }

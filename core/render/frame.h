@@ -52,6 +52,13 @@ struct FrameStages {
   double learn_ms = 0;  // cells certified
 };
 
+// Where a server's time for a frame went: FrameTiming in service.proto.
+struct FrameTiming {
+  double queue_ms = 0;
+  double render_ms = 0;
+  double encode_ms = 0;
+};
+
 // Row-major, row 0 on top. Where a pixel has several samples, its radiance is their mean
 // (sample_mean.h), and its other layers are those of one of them (ShownSample).
 struct Frame {
@@ -73,6 +80,9 @@ struct Frame {
   SceneVersion scene_version;
   FrameStats stats;
   FrameStages stages;
+  // Of frames that a server has sent; else 0.
+  FrameTiming timing;
+  uint64_t wire_bytes = 0;  // of its messages
 };
 
 }  // namespace linetree

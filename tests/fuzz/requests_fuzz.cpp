@@ -58,7 +58,8 @@ void Handle(const v1::RenderFrameRequest& request) {
 }
 void Handle(const v1::FlyRequest& request) { Handle(request.frame()); }
 void Handle(const v1::TraceRaysRequest& request) {
-  Check(TheBackend().TraceRays(request, CancelToken()).status());
+  FrameTimer timer;
+  Check(TheBackend().TraceRays(request, CancelToken(), timer).status());
 }
 void Handle(const v1::GetStatsRequest& request) { Check(TheBackend().GetStats(request).status()); }
 void Handle(const v1::UpdateSceneRequest& request) {

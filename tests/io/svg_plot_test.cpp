@@ -44,6 +44,24 @@ TEST(SvgPlot, ShowsTitleLabelsLegendAndEveryPoint) {
   EXPECT_EQ(Count(svg, "<polyline"), 2u);
 }
 
+TEST(SvgPlot, BandsLieWhereTheirValuesAreAndOnlyOnTheAxis) {
+  // The inner rectangle is x 80..590, y 40..285.
+  Plot plot{"", {}, {}, {{"a", {{0, 0}, {10, 100}}}}};
+  plot.x.max = 10;
+  plot.x.bands = {{5, 20, "wide"}, {11, 12, "outside"}};
+  plot.y.bands = {{40, 40, "goal"}};
+  const std::string svg = SvgPlots({plot});
+  EXPECT_THAT(svg, HasSubstr("<rect x=\"335.0\" y=\"40.0\" width=\"255.0\" height=\"245.0\""));
+  EXPECT_THAT(svg, HasSubstr("<line x1=\"80.0\" y1=\"187.0\" x2=\"590.0\" y2=\"187.0\""));
+  EXPECT_THAT(svg, HasSubstr(">wide<"));
+  EXPECT_THAT(svg, HasSubstr(">goal<"));
+  EXPECT_THAT(svg, Not(HasSubstr("outside")));
+  // A goal that nothing has reached is in the picture too.
+  plot.y.bands = {{200, 200, "goal"}};
+  EXPECT_THAT(SvgPlots({plot}),
+              HasSubstr("<line x1=\"80.0\" y1=\"40.0\" x2=\"590.0\" y2=\"40.0\""));
+}
+
 TEST(SvgPlot, PointsLieWhereTheirValuesAre) {
   // The inner rectangle is x 80..590, y 40..285.
   const std::string svg = SvgPlots({{"", {}, {}, {{"a", {{0, 0}, {10, 100}}}}}});

@@ -1,4 +1,5 @@
 // What the RPCs answer when all is well.
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -220,6 +221,62 @@ TEST(ServiceTest, RaysAreTheHostsRays) {
     EXPECT_EQ(served->answers[i].object, local->answers[i].object);
   }
   EXPECT_EQ(served->stats.pixels, rays.size());
+}
+
+// The parts of a frame's or batch's time lie within what passed here, and say that it was worked
+// on.
+void ExpectWithin(const v1::FrameTiming& timing, double wall_ms, double elapsed_ms) {
+  EXPECT_GE(timing.queue_ms(), 0);
+  EXPECT_GE(timing.render_ms(), wall_ms);
+  EXPECT_GT(timing.render_ms(), 0);
+  EXPECT_GT(timing.encode_ms(), 0);
+  EXPECT_LE(timing.queue_ms() + timing.render_ms() + timing.encode_ms(), elapsed_ms);
+}
+
+TEST(ServiceTest, RepliesSayWhereTheirTimeWent) {
+  test::RunningServer running;
+  const auto began = std::chrono::steady_clock::now();
+  const auto elapsed_ms = [began] {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began)
+        .count();
+  };
+  for (const v1::Codec codec : {v1::CODEC_FLOAT, v1::CODEC_PNG}) {
+    grpc::ClientContext context;
+    v1::RenderFrameRequest request = test::SmallFrame(100, 100);
+    request.set_codec(codec);
+    const auto stream = running.stub().RenderFrame(&context, request);
+    v1::FrameChunk chunk;
+    while (stream->Read(&chunk)) continue;
+    ASSERT_TRUE(stream->Finish().ok());
+    ExpectWithin(chunk.end().timing(), chunk.end().stats().wall_ms(), elapsed_ms());
+  }
+  grpc::ClientContext flight_context;
+  const auto flight = running.stub().Fly(&flight_context);
+  v1::FlyRequest viewpoint;
+  *viewpoint.mutable_frame() = test::SmallFrame(100, 100);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(flight->Write(viewpoint));
+  flight->WritesDone();
+  v1::FlyReply reply;
+  double sum_ms = 0;  // no part of a flight's time belongs to two frames
+  while (flight->Read(&reply)) {
+    if (!reply.chunk().has_end()) continue;
+    const v1::FrameTiming& timing = reply.chunk().end().timing();
+    ExpectWithin(timing, reply.chunk().end().stats().wall_ms(), elapsed_ms());
+    sum_ms += timing.queue_ms() + timing.render_ms() + timing.encode_ms();
+  }
+  EXPECT_LE(sum_ms, elapsed_ms());
+  EXPECT_TRUE(flight->Finish().ok());
+
+  grpc::ClientContext rays_context;
+  v1::TraceRaysRequest rays;
+  rays.set_scene("ball");
+  for (int i = 0; i < 100; ++i) {
+    rays.add_rays()->mutable_origin()->set_y(3);
+    rays.mutable_rays(i)->mutable_direction()->set_y(-1);
+  }
+  v1::TraceRaysReply answers;
+  ASSERT_TRUE(running.stub().TraceRays(&rays_context, rays, &answers).ok());
+  ExpectWithin(answers.timing(), answers.stats().wall_ms(), elapsed_ms());
 }
 
 TEST(ServiceTest, ManyClientsAtOnceGetTheirOwnPictures) {

@@ -54,6 +54,27 @@ TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
   EXPECT_EQ(json["tables"][2]["rows"][0]["printed"]["success"], 0.76);
 }
 
+TEST(BenchCommand, ReportIsAPageThatGoesOnWhereItWas) {
+  TempDir dir;
+  const auto report = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"bench", "report", "--quick", "--scenes", SourceFile("scenes"), "-o",
+                               dir.File("report"), "--threads", "2"});
+    return RunLinetree(more);
+  };
+  const Finished first = report({"--section", "edit"});
+  ASSERT_EQ(first.exit_status, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("pixels beyond epsilon after edits"));
+  EXPECT_THAT(first.out, HasSubstr("1 sections, of which 0 were there"));
+  const Finished again = report({"--section", "edit"});
+  ASSERT_EQ(again.exit_status, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("1 sections, of which 1 were there"));
+  std::ifstream file(dir.File("report/report.html"));
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(page, HasSubstr("<polyline"));
+  EXPECT_THAT(page, HasSubstr("linetree bench edit --made"));
+  EXPECT_EQ(report({"--section", "nothing"}).exit_status, 2);
+}
+
 std::vector<std::string> BenchAudit(std::vector<std::string> more) {
   std::vector<std::string> words = {"bench", "audit", "--threads", "2"};
   for (std::string& word : more) words.push_back(std::move(word));
