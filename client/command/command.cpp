@@ -113,6 +113,7 @@ int RunCommandLine(int argc, const char* const* argv) {
   AddScene(app, commands);
   AddCompare(app, commands);
   AddLoad(app, commands);
+  AddCache(app, commands);
   AddBench(app, commands);
   try {
     app.parse(argc, argv);
