@@ -114,6 +114,7 @@ int RunCommandLine(int argc, const char* const* argv) {
   AddCompare(app, commands);
   AddStore(app, commands);
   AddLoad(app, commands);
+  AddCache(app, commands);
   AddBench(app, commands);
   try {
     app.parse(argc, argv);

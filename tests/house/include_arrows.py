@@ -1,6 +1,6 @@
 """Which folder may include which: data and dependencies flow one way.
 
-    core/  math -> jet -> scene -> trace -> packet -> tree -> certify -> cache -> store
+    core/  math -> policy -> jet -> scene -> trace -> packet -> tree -> certify -> cache -> store
            -> frame -> render -> audit; io may include all of them
     peers (other ray tracers, for comparison) includes core; peers/embree nothing else of peers
     client, server include core; the server may share code with client/library, the programs in client
@@ -13,7 +13,7 @@ import re
 
 from trees import sources
 
-LAYERS = ["math", "jet", "scene", "trace", "packet", "tree", "certify", "cache", "store", "frame", "render", "audit"]
+LAYERS = ["math", "policy", "jet", "scene", "trace", "packet", "tree", "certify", "cache", "store", "frame", "render", "audit"]
 _INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 _GRPC = re.compile(r"^grpc|\.grpc\.pb\.h$")
 _PROTOBUF = re.compile(r"^google/protobuf/|\.pb\.h$")

@@ -1,0 +1,31 @@
+// Least frequently used since it came in; of equals the one that was used longest ago.
+#include "core/policy/make_policy.h"
+#include "core/policy/victim_heap.h"
+
+namespace linetree {
+namespace {
+
+class Lfu : public EvictionPolicy {
+ public:
+  void Insert(const PolicyItem& item) override { Use(items_.Add(item)); }
+  void Access(uint64_t id) override { Use(items_.At(id)); }
+  void Remove(uint64_t id) override {
+    const ItemSlot slot = items_.At(id);
+    heap_.Take(slot);
+    items_.Erase(slot);
+  }
+  void Evict(uint64_t id) override { Remove(id); }
+  uint64_t PickVictim() override { return items_[heap_.first()].item.id; }
+
+ private:
+  void Use(ItemSlot slot) { heap_.Set(slot, ++items_[slot].mark); }
+
+  ItemTable items_;
+  VictimHeap heap_;
+};
+
+}  // namespace
+
+std::unique_ptr<EvictionPolicy> MakeLfu() { return std::make_unique<Lfu>(); }
+
+}  // namespace linetree

@@ -1,0 +1,151 @@
+// Our own: evicts the item with the least predicted reuse x rebuild cost / bytes.
+//
+// Reuse is predicted from when items were used before, in frames (reuse_times.h), and evicted items
+// are remembered so that the ones that were missed count as well. What the owner expects of an item
+// (ExpectUse) stands in the place of that.
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/policy/item_table.h"
+#include "core/policy/make_policy.h"
+#include "core/policy/reuse_times.h"
+
+namespace linetree {
+namespace {
+
+// Evicted items that are remembered, in budgets.
+constexpr uint64_t kGhostBudgets = 2;
+// Victims are chosen many at a time, this share of all items, and anew after so many calls.
+constexpr size_t kBatchShare = 16;
+constexpr size_t kLeastBatch = 16;
+// An item's class: for how long it was away the last time but one, two classes to an octave.
+constexpr size_t kClasses = 24;
+
+class Reuse : public EvictionPolicy {
+ public:
+  void Insert(const PolicyItem& item) override {
+    ++calls_;
+    const ItemSlot ghost = items_.Find(item.id);
+    if (ghost != kNoItem) {
+      Use(ghost);
+      ghosts_.Take(ghost);
+      items_[ghost].item = item;
+      return held_.Push(ghost);
+    }
+    const ItemSlot slot = items_.Add(item);
+    if (slot >= pasts_.size()) pasts_.resize(slot + size_t{1});
+    pasts_[slot] = {.used = now_};
+    held_.Push(slot);
+  }
+  void Access(uint64_t id) override {
+    ++calls_;
+    Use(items_.At(id));
+  }
+  void Remove(uint64_t id) override { held_.Forget(items_.At(id)); }
+  void Evict(uint64_t id) override {
+    const ItemSlot slot = items_.At(id);
+    held_.Take(slot);
+    ghosts_.Push(slot);
+    ghosts_.Shrink(kGhostBudgets * budget_bytes());
+  }
+  void Spare(uint64_t id) override { pasts_[items_.At(id)].spared = now_; }
+  uint64_t PickVictim() override {
+    const bool is_old = batch_frame_ != now_ && calls_ * kBatchShare > items_.size();
+    if (is_old) ChooseBatch();
+    for (int tries = 0; tries < 2; ++tries) {
+      for (; next_ < batch_.size(); ++next_) {
+        if (IsGood(batch_[next_])) return batch_[next_].id;
+      }
+      ChooseBatch();
+    }
+    return items_[held_.oldest()].item.id;
+  }
+  void NextFrame() override { ++now_; }
+  void ExpectUse(uint64_t id, double frames) override {
+    pasts_[items_.At(id)].expected = static_cast<float>(now_ + frames);
+  }
+
+ private:
+  struct Past {
+    uint32_t used = 0;          // frame of the last use
+    uint32_t spared = 0;        // frame in which it was
+    uint32_t away[2] = {0, 0};  // its last absences in frames, the last one first; 0: none yet
+    float expected = -1;        // frame of the next use, if the owner has said so
+  };
+  struct Candidate {
+    uint64_t id;
+    ItemSlot slot;
+    uint32_t used;
+    double worth;
+    bool operator<(const Candidate& o) const { return worth < o.worth; }
+  };
+
+  static size_t ClassOf(const Past& past) {
+    const uint32_t away = past.away[1] != 0 ? past.away[1] : past.away[0];
+    if (away == 0) return 0;
+    return std::min(kClasses - 1, 1 + static_cast<size_t>(2 * std::log2(away)));
+  }
+  void Use(ItemSlot slot) {
+    Past& past = pasts_[slot];
+    const uint32_t gap = now_ - past.used;
+    past.expected = -1;
+    if (gap == 0) return;
+    times_.Ended(ClassOf(past), gap);
+    past.used = now_;
+    if (gap <= 2 * times_.usual_gap()) return;
+    past.away[1] = past.away[0];
+    past.away[0] = gap;
+  }
+  double Worth(ItemSlot slot) const {
+    const Past& past = pasts_[slot];
+    const PolicyItem& item = items_[slot].item;
+    // An item of this frame waits for the next one.
+    const double uses =
+        past.expected >= 0
+            ? 1.0 / std::max(1.0, static_cast<double>(past.expected) - static_cast<double>(now_))
+            : times_.UsesPerFrame(ClassOf(past), now_ - past.used + 1);
+    return uses * item.rebuild_ns / static_cast<double>(item.bytes);
+  }
+  bool IsGood(const Candidate& candidate) const {
+    const ItemSlot slot = items_.Find(candidate.id);
+    return slot == candidate.slot && held_.Holds(slot) && pasts_[slot].used == candidate.used &&
+           !IsSpared(slot);
+  }
+  bool IsSpared(ItemSlot slot) const { return pasts_[slot].spared == now_; }
+
+  void ChooseBatch() {
+    times_.Begin(items_.size());
+    items_.ForEach(
+        [&](ItemSlot slot) { times_.Open(ClassOf(pasts_[slot]), now_ - pasts_[slot].used + 1); });
+    times_.Learn();
+    batch_.clear();
+    items_.ForEach([&](ItemSlot slot) {
+      if (!held_.Holds(slot) || IsSpared(slot)) return;
+      batch_.push_back({items_[slot].item.id, slot, pasts_[slot].used, Worth(slot)});
+    });
+    const size_t wanted = std::min(batch_.size(), batch_.size() / kBatchShare + kLeastBatch);
+    const auto end = batch_.begin() + static_cast<std::ptrdiff_t>(wanted);
+    std::partial_sort(batch_.begin(), end, batch_.end());
+    batch_.erase(end, batch_.end());
+    next_ = 0;
+    batch_frame_ = now_;
+    calls_ = 0;
+  }
+
+  ItemTable items_;
+  ItemQueue held_{items_, 1}, ghosts_{items_, 2};
+  std::vector<Past> pasts_;  // by slot
+  ReuseTimes times_{kClasses};
+  uint32_t now_ = 1;
+  std::vector<Candidate> batch_;  // those to go first, from next_ on
+  size_t next_ = 0;
+  uint32_t batch_frame_ = 0;
+  size_t calls_ = 0;  // since the batch was chosen
+};
+
+}  // namespace
+
+std::unique_ptr<EvictionPolicy> MakeReuse() { return std::make_unique<Reuse>(); }
+
+}  // namespace linetree
