@@ -53,6 +53,7 @@ Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> l
              [log = log_](const Violation& violation) {
                log->error("audit: an answer breaks its promise: {}", ToLine(violation));
              }),
+      look_ahead_(renders_, pool_, options.prefetch),
       renders_(options.render_slots,
                {options.limits.max_waiting_renders, options.limits.max_waiting_rays},
                Busy("render slot")),
@@ -312,6 +313,7 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
   auto options = RenderOptionsFromWire(request.options(), options_.defaults, "");
   if (!options.ok()) return options.status();
   const std::vector<Ray> rays = RaysFromWire(request);
+  const LookAhead::Asked asked(look_ahead_);
   const auto batch = scene->host->TraceRays(rays, *options, pool_, &cancel);
   if (!batch.ok()) return batch.status();
   scene->answers->Add(*batch);
@@ -341,6 +343,7 @@ absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFra
 
 absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelToken& cancel) {
   const NamedHost& scene = frame.scene;
+  const LookAhead::Asked asked(look_ahead_);
   auto answer = scene.host->RenderFrame(frame.request, pool_, &cancel);
   if (answer.ok()) {
     scene.answers->Add(*answer);

@@ -20,6 +20,7 @@
 #include "server/budget.h"
 #include "server/frame_timer.h"
 #include "server/job_queue.h"
+#include "server/look_ahead.h"
 #include "server/metrics.h"
 #include "server/open_calls.h"
 #include "server/options.h"
@@ -33,7 +34,7 @@ class Backend {
  public:
   // `options` must be valid.
   Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log);
-  ~Backend() { StopWarmUps(); }
+  ~Backend() { StopBackground(); }
 
   const ServerOptions& options() const { return options_; }
   const ServerLimits& limits() const { return options_.limits; }
@@ -42,8 +43,11 @@ class Backend {
   // Begins the warm-ups that options.warm_ups names, and calls `ready` at the end of the last one,
   // or at once if there are none. Errors are those of the paths.
   absl::Status WarmUp(const std::function<void()>& ready);
-  // Gives all warm-ups up; `ready` is not called any more.
-  void StopWarmUps() { warm_ups_.Stop(); }
+  // Gives up what nobody waits for; `ready` is not called any more.
+  void StopBackground() {
+    warm_ups_.Stop();
+    look_ahead_.Stop();
+  }
 
   absl::StatusOr<v1::SceneInfo> LoadScene(v1::LoadSceneRequest request);
   v1::ListScenesReply ListScenes() const;
@@ -80,6 +84,7 @@ class Backend {
   Budget& flights() { return flights_; }
   // Watches what is being sent.
   StallWatch& sends() { return sends_; }
+  LookAhead& look_ahead() { return look_ahead_; }
   SceneStore& scenes() { return scenes_; }
   LiveAudit& audit() { return audit_; }
   Load CurrentLoad() const;
@@ -109,6 +114,7 @@ class Backend {
   LiveAudit audit_;
   // Last: their threads use all of the above.
   WarmUps warm_ups_{renders_, pool_};
+  LookAhead look_ahead_;
   JobQueue renders_;
   JobQueue loads_;
 };

@@ -129,7 +129,17 @@ absl::StatusOr<FrameChunks> FlyCall::Render() {
   auto frame = backend_.Render(*frame_, *cancel_);
   if (!frame.ok()) return frame.status();
   timer_.Enter(FrameTimer::Stage::kEncode);
-  return FrameChunks::Make(*std::move(frame), frame_->format);
+  auto chunks = FrameChunks::Make(*std::move(frame), frame_->format);
+  if (!step_.refines) LookAheadFrom(*frame_);
+  return chunks;
+}
+
+void FlyCall::LookAheadFrom(const Backend::PreparedFrame& frame) {
+  const auto next = forecast_.After(frame.request.camera);
+  if (!next) return;
+  FrameRequest request = frame.request;
+  request.camera = *next;
+  backend_.look_ahead().Offer(frame.scene, request);
 }
 
 void FlyCall::SendNext() {

@@ -16,6 +16,7 @@
 #include "server/flight_plan.h"
 #include "server/frame_timer.h"
 #include "server/resume_token.h"
+#include "server/view_forecast.h"
 
 namespace linetree {
 
@@ -59,6 +60,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   // On the render queue.
   void Run(const absl::Status& turn);
   absl::StatusOr<FrameChunks> Render();
+  void LookAheadFrom(const Backend::PreparedFrame& frame);
 
   Backend& backend_;
   grpc::CallbackServerContext* const context_;
@@ -92,6 +94,7 @@ class FlyCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   std::optional<CancelToken> cancel_;
   std::optional<Backend::PreparedFrame> frame_;
   std::optional<FrameChunks> chunks_;
+  ViewForecast forecast_;
 };
 
 // The flights that are open, so that a server that stops can end them.

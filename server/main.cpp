@@ -62,6 +62,8 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->default_str("1GiB");
+  app.add_flag("!--no-prefetch", options.prefetch,
+               "do not render ahead along flights while nothing else is to be done");
   app.add_option("--data-dir", options.data_folder,
                  "folder where the caches' cells are kept, so that the next server starts warm")
       ->type_name("FOLDER")

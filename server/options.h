@@ -51,6 +51,8 @@ struct ServerOptions {
   // they are not.
   std::string data_folder;
   uint64_t store_bytes = uint64_t{1} << 30;
+  // Whether frames that flights are likely to ask for are rendered while nobody asks for anything.
+  bool prefetch = true;
   // What requests get that do not say otherwise.
   RenderOptions defaults;
   // Share of the answers from caches that are traced again, to count those that break their

@@ -163,7 +163,7 @@ bool Server::MaySeeMetrics(const std::string& authorization) const {
 
 void Server::Drain(std::chrono::milliseconds timeout_ms) {
   if (grpc_ == nullptr) return;
-  backend_.StopWarmUps();
+  backend_.StopBackground();
   SetReady(false);
   backend_.scenes().Observe(nullptr);
   // Whatever else is told from now on is not heard.

@@ -130,6 +130,15 @@ void AddStore(const v1::GetStatsReply& stats, Families& out) {
   }
 }
 
+void AddAhead(const v1::GetStatsReply& stats, Families& out) {
+  out.Begin("linetree_ahead_cells_total", MetricType::Counter,
+            "Cells built before anybody asked for them, and those of them used since.");
+  for (const SceneStats& scene : stats.scenes()) {
+    out.Add(scene.ahead().cells_built(), {{"scene", scene.scene()}, {"cells", "built"}});
+    out.Add(scene.ahead().cells_used(), {{"scene", scene.scene()}, {"cells", "used"}});
+  }
+}
+
 void AddAudit(const v1::GetStatsReply& stats, Families& out) {
   out.Begin("linetree_audit_checked_total", MetricType::Counter, "Answers that were traced again.");
   AddOfScenes(stats, out, [](const SceneStats& s) { return s.audit().checked(); });
@@ -158,6 +167,7 @@ std::vector<MetricFamily> CollectServer(const v1::GetStatsReply& stats, const Lo
   AddWork(stats, families);
   AddAnswers(stats, families);
   AddHoldings(stats, families);
+  AddAhead(stats, families);
   AddAudit(stats, families);
   AddStore(stats, families);
   families.Begin("process_resident_memory_bytes", MetricType::Gauge, "Of this process.");

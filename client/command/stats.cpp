@@ -75,7 +75,11 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
             {"violations", scene.audit().violations()},
             {"dropped", scene.audit().dropped()},
             {"max_error_over_allowed", JsonNumber(scene.audit().max_error_over_allowed())}}},
-          {"store", StoreJson(scene)}};
+          {"store", StoreJson(scene)},
+          {"ahead",
+           {{"frames", scene.ahead().frames()},
+            {"cells_built", scene.ahead().cells_built()},
+            {"cells_used", scene.ahead().cells_used()}}}};
 }
 
 nlohmann::json ReplyJson(const v1::GetStatsReply& reply) {

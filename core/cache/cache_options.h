@@ -20,6 +20,13 @@ struct CacheOptions {
   bool always_ask = false;
 };
 
+// Cells that were certified for requests that nobody had made yet (RenderOptions::ahead), and those
+// of them that others have used since. The rest is still to be used, or was wasted.
+struct AheadCounts {
+  uint64_t built = 0;
+  uint64_t used = 0;
+};
+
 // Shares of the memory that the surface trees and the certified linetrees get; the linetrees of the
 // paper's judge and their samples get the rest.
 inline constexpr double kSurfaceShare = 0.25;

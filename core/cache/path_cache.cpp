@@ -205,8 +205,14 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
   const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
+    if (node.ahead && !refines_ahead_) {
+      node.ahead = false;
+      ++ahead_.used;
+    }
     if (group.paths && forest.store.Publish(node, std::move(group.paths), budget)) {
       ++certified;
+      node.ahead = refines_ahead_;
+      ahead_.built += refines_ahead_ ? 1 : 0;
       if (journal_ != nullptr) published.push_back(&group);
     }
     if (!node.payload || node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
@@ -243,8 +249,9 @@ size_t PathCache::Restore(const PathLimits& limits, std::span<KeptPathCell> cell
 }
 
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
-                           const ParallelLoop& loop) {
+                           const ParallelLoop& loop, bool ahead) {
   std::lock_guard refining(refine_mutex_);
+  refines_ahead_ = ahead;
   uint64_t certified = 0;
   Forest* forest = nullptr;
   std::vector<Group> groups;
@@ -348,6 +355,11 @@ uint64_t PathCache::CellCount() const {
   uint64_t cells = 0;
   for (const auto& forest : forests_) cells += forest->store.cell_count();
   return cells;
+}
+
+AheadCounts PathCache::ahead() const {
+  std::shared_lock lock(mutex_);
+  return ahead_;
 }
 
 std::vector<std::array<uint64_t, kVerdictCount>> PathCache::CellVerdicts() const {

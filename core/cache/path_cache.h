@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
@@ -93,9 +94,10 @@ class PathCache {
   };
 
   // Certifies and divides the cells of the samples where that pays; `weight` is the number of rays
-  // that one sample stands for. Returns how many cells it certified.
+  // that one sample stands for; `ahead` as in SurfaceCache::Thrift. Returns how many cells it
+  // certified.
   uint64_t Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
-                  const ParallelLoop& loop);
+                  const ParallelLoop& loop, bool ahead = false);
 
   // As SurfaceCache::Adopt.
   Adopted Adopt(PathCache& former, const ChangeReach& reach);
@@ -108,6 +110,7 @@ class PathCache {
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
+  AheadCounts ahead() const;
   // Cells by verdict, for every object of the scene.
   std::vector<std::array<uint64_t, kVerdictCount>> CellVerdicts() const;
   void Clear();
@@ -137,11 +140,13 @@ class PathCache {
   CellJournal* journal_ = nullptr;
   std::vector<bool> branches_;  // by object: whether it reflects or transmits
   std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
+  bool refines_ahead_ = false;  // guarded by refine_mutex_
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;
   std::vector<std::unique_ptr<Forest>> forests_;
   uint32_t clock_ = 1;
+  AheadCounts ahead_;
 };
 
 }  // namespace linetree

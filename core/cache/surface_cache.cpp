@@ -53,6 +53,10 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
     tree.cells().ForEach([&](SurfaceNode& node) {
       if (!node.IsLeaf()) return;
       const uint32_t uses = node.uses.exchange(0, std::memory_order_relaxed);
+      if (node.ahead && uses > 0 && !thrift.ahead) {
+        node.ahead = false;
+        ++ahead_.used;
+      }
       if (uses < thrift.least_uses || uses == 0) return;
       if (node.payload && !node.payload->WantsSmaller()) return;
       if (uses * weight < least(node.payload.get())) return;
@@ -127,6 +131,8 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       if (!node.payload) {
         if (!work.lights) continue;  // the loop was cut short
         if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
+        node.ahead = thrift.ahead;
+        ahead_.built += thrift.ahead ? 1 : 0;
         if (journal_ != nullptr) published.push_back(&work);
       }
       if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, memory_bytes_))
@@ -216,6 +222,11 @@ uint64_t SurfaceCache::CountBytes() const {
 uint64_t SurfaceCache::CellCount() const {
   std::shared_lock lock(mutex_);
   return store_.cell_count();
+}
+
+AheadCounts SurfaceCache::ahead() const {
+  std::shared_lock lock(mutex_);
+  return ahead_;
 }
 
 std::vector<TreeSize> SurfaceCache::TreeSizes() const {

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
@@ -71,6 +72,8 @@ class SurfaceCache {
     // Null: nothing.
     const Price* price = nullptr;
     double most_work = std::numeric_limits<double>::infinity();
+    // Whether what was used was so by requests that nobody has made (AheadCounts).
+    bool ahead = false;
   };
   struct Grown {
     uint64_t cells = 0;  // certified
@@ -96,6 +99,7 @@ class SurfaceCache {
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
+  AheadCounts ahead() const;
   uint64_t TreeCount() const;
   std::vector<TreeSize> TreeSizes() const;  // by object
   void Clear();
@@ -124,6 +128,7 @@ class SurfaceCache {
   uint64_t memory_bytes_;
   TreeStore<SurfaceTree> store_;
   uint32_t clock_ = 1;
+  AheadCounts ahead_;
 };
 
 }  // namespace linetree

@@ -114,6 +114,10 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
     out->set_bytes(part.bytes);
     if (part.has_cells) out->set_cells(part.cells);
   }
+  const AheadTotals ahead = host.ahead();
+  stats.mutable_ahead()->set_frames(ahead.frames);
+  stats.mutable_ahead()->set_cells_built(ahead.cells.built);
+  stats.mutable_ahead()->set_cells_used(ahead.cells.used);
   std::vector<Counts> cells = host.cache().CellVerdicts();
   const std::vector<Counts> certified = host.paths().CellVerdicts();
   for (size_t object = 0; object < cells.size(); ++object) {

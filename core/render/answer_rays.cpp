@@ -269,8 +269,12 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     });
     const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
     if (IsCancelled()) return;
-    uint64_t certified = trees.surfaces.Refine(weight, loop);
-    if (!is_last) certified += trees.paths.Refine(options_.limits, samples, weight, loop);
+    SurfaceCache::Thrift thrift;
+    thrift.ahead = options_.ahead;
+    uint64_t certified = trees.surfaces.Refine(weight, loop, thrift).cells;
+    if (!is_last) {
+      certified += trees.paths.Refine(options_.limits, samples, weight, loop, options_.ahead);
+    }
     stats_.cells_tried += certified;
     stats_.cells_accepted += certified;
   }

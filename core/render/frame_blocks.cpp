@@ -272,7 +272,9 @@ double Blocks::Grow(const Growth& growth) {
     };
     pool_.ParallelFor(count, unless_cancelled, &frame_.stats.cpu_ms);
   };
-  const auto grown = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, growth, loop);
+  Growth own = growth;
+  own.ahead = options_.ahead;
+  const auto grown = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, own, loop);
   frame_.stats.cells_tried += grown.cells;
   frame_.stats.cells_accepted += grown.cells;
   return grown.work;

@@ -36,7 +36,7 @@ SurfaceCache::Grown GrowTrees(const Scene& scene, SurfaceCache& surfaces, FrameP
   const double most_work = plan.always() ? Box3::kInf : growth.most_work;
   return surfaces.Refine(
       growth.weight, loop,
-      {plan.always() ? 1 : kLeastUses, &least_points, &may_grow, &price, most_work});
+      {plan.always() ? 1 : kLeastUses, &least_points, &may_grow, &price, most_work, growth.ahead});
 }
 
 }  // namespace linetree

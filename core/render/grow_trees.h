@@ -25,10 +25,11 @@ inline constexpr size_t kBlockPackets = 64;
 
 // What has just been asked for, and what it may cost.
 struct Growth {
-  double weight;     // shading points that one use stands for
-  double booked;     // and one that is booked
-  double horizon;    // a cell is worth its price within so many requests like this one
-  double most_work;  // what they may cost together: those that most points ask for come first
+  double weight;       // shading points that one use stands for
+  double booked;       // and one that is booked
+  double horizon;      // a cell is worth its price within so many requests like this one
+  double most_work;    // what they may cost together: those that most points ask for come first
+  bool ahead = false;  // as RenderOptions::ahead
 };
 
 // Certifies the cells that pay for themselves.

@@ -36,6 +36,9 @@ struct RenderOptions {
   PathLimits limits;
   Lanes lanes = Lanes::kScalar;
   RayOrder ray_order = RayOrder::kAuto;
+  // Nobody waits for the answer: what the caches learn from it, they learn ahead of whoever will
+  // (AheadCounts). Not part of a request over the wire.
+  bool ahead = false;
 };
 
 // Largest picture and batch that are accepted.

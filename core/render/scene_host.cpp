@@ -254,6 +254,10 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
   if (!status.ok()) return status;
   frame.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
+  if (request.options.ahead) {
+    ++ahead_frames_;
+    return frame;
+  }
   ++totals_.frames;
   totals_.stats += frame.stats;
   return frame;
@@ -288,6 +292,17 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
   ++totals_.ray_batches;
   totals_.stats += batch.stats;
   return batch;
+}
+
+AheadTotals SceneHost::ahead() const {
+  AheadTotals totals;
+  for (const AheadCounts& cells : {surfaces_.ahead(), paths_.ahead()}) {
+    totals.cells.built += cells.built;
+    totals.cells.used += cells.used;
+  }
+  std::lock_guard lock(totals_mutex_);
+  totals.frames = ahead_frames_;
+  return totals;
 }
 
 HostTotals SceneHost::totals() const {

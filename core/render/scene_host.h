@@ -48,6 +48,12 @@ struct HostTotals {
   FrameStats stats;
 };
 
+// What was rendered ahead (RenderOptions::ahead), which HostTotals leave out.
+struct AheadTotals {
+  uint64_t frames = 0;
+  AheadCounts cells;
+};
+
 // The ray that TraceRays answers for `ray`: the same with a direction of unit length, or
 // INVALID_ARGUMENT for the field of rays[index] that is not finite or zero. The length of a unit
 // vector is off by rounding, so a second call may change a bit again.
@@ -105,6 +111,7 @@ class SceneHost {
                                      WorkerPool& pool, const CancelToken* cancel = nullptr);
 
   HostTotals totals() const;
+  AheadTotals ahead() const;
 
  private:
   // By packets, or ray by ray.
@@ -126,7 +133,8 @@ class SceneHost {
   PathCache paths_;
   FramePlan plan_;
   mutable std::mutex totals_mutex_;
-  HostTotals totals_;  // guarded by totals_mutex_
+  HostTotals totals_;  // guarded by totals_mutex_, as is ahead_frames_
+  uint64_t ahead_frames_ = 0;
 };
 
 }  // namespace linetree

@@ -24,6 +24,7 @@ template <class Traits>
 struct CellTreeNode {
   typename Traits::Cell cell;
   int root = 0;
+  bool ahead = false;  // certified before anybody asked for it, and nobody has yet
   std::unique_ptr<const typename Traits::Payload> payload;  // null: not certified yet
   std::unique_ptr<std::array<CellTreeNode, Traits::kChildren>> children;
   // Uses of this cell and no smaller one; what counts as one, and when they are taken back, is the

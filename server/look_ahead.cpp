@@ -1,0 +1,84 @@
+#include "server/look_ahead.h"
+
+#include <utility>
+
+#include "core/math/check.h"
+
+namespace linetree {
+namespace {
+
+bool HasRoom(const SceneHost& host, uint64_t memory_bytes) {
+  return static_cast<double>(host.CacheBytes()) <
+         kLookAheadShare * static_cast<double>(memory_bytes);
+}
+
+}  // namespace
+
+void LookAhead::Offer(const NamedHost& scene, const FrameRequest& frame) {
+  if (!on_ || frame.options.mode != Mode::kCached) return;
+  const std::lock_guard lock(mutex_);
+  next_ = Offered{scene.host, scene.memory_bytes, frame};
+  next_->frame.options.ahead = true;
+  SubmitIfIdle();
+}
+
+void LookAhead::Begin() {
+  if (!on_) return;
+  const std::lock_guard lock(mutex_);
+  ++asked_;
+  if (cancel_) cancel_->Cancel();
+}
+
+void LookAhead::End() {
+  if (!on_) return;
+  const std::lock_guard lock(mutex_);
+  --asked_;
+  SubmitIfIdle();
+}
+
+void LookAhead::SubmitIfIdle() {
+  if (stopping_ || has_job_ || asked_ > 0 || !next_) return;
+  const auto pixels =
+      static_cast<uint64_t>(next_->frame.width) * static_cast<uint64_t>(next_->frame.height);
+  // One job at a time needs no bound of its own.
+  const auto job = queue_.Submit({.priority = Priority::kBackground,
+                                  .session = "look ahead",
+                                  .work_rays = pixels,
+                                  .has_place = true},
+                                 [this](const absl::Status& turn) { Render(turn); });
+  LT_CHECK(job.ok());
+  has_job_ = true;
+}
+
+void LookAhead::Render(const absl::Status& turn) {
+  std::optional<Offered> offered;
+  std::shared_ptr<SceneHost> host;
+  {
+    const std::lock_guard lock(mutex_);
+    // Whoever has come meanwhile goes first; what waits waits on.
+    if (turn.ok() && !stopping_ && asked_ == 0) {
+      offered = std::exchange(next_, std::nullopt);
+      host = offered ? offered->host.lock() : nullptr;
+      if (host) cancel_.emplace();
+    }
+  }
+  // It is for the caches: nobody takes the frame.
+  if (host && HasRoom(*host, offered->memory_bytes)) {
+    (void)host->RenderFrame(offered->frame, pool_, &*cancel_);
+  }
+  host.reset();
+  const std::lock_guard lock(mutex_);
+  cancel_.reset();
+  has_job_ = false;
+  if (turn.ok()) SubmitIfIdle();
+  ended_.notify_all();
+}
+
+void LookAhead::Stop() {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  if (cancel_) cancel_->Cancel();
+  ended_.wait(lock, [this] { return !has_job_; });
+}
+
+}  // namespace linetree

@@ -1,0 +1,72 @@
+// Frames that flights are likely to ask for, rendered while nobody asks for anything: what the
+// caches learn from them is there when it is asked for. At most one is under way, behind everything
+// that somebody waits for; as soon as somebody does, it ends within a tile.
+//
+// Thread safety: all methods may be called from any thread.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "core/render/scene_host.h"
+#include "server/job_queue.h"
+#include "server/scene_store.h"
+
+namespace linetree {
+
+// Of a scene's memory; where more is in use, what is learnt ahead would push out what is needed.
+inline constexpr double kLookAheadShare = 0.75;
+
+class LookAhead {
+ public:
+  // Both must outlive this; neither may end before Stop has been called. Does nothing unless `on`.
+  LookAhead(JobQueue& queue, WorkerPool& pool, bool on) : queue_(queue), pool_(pool), on_(on) {}
+
+  // A frame that may be asked for next; takes the place of one that waits.
+  void Offer(const NamedHost& scene, const FrameRequest& frame);
+
+  // Alive while somebody waits for an answer.
+  class Asked {
+   public:
+    explicit Asked(LookAhead& look_ahead) : look_ahead_(look_ahead) { look_ahead_.Begin(); }
+    ~Asked() { look_ahead_.End(); }
+    Asked(const Asked&) = delete;
+    Asked& operator=(const Asked&) = delete;
+
+   private:
+    LookAhead& look_ahead_;
+  };
+
+  // Gives all up and waits for that; later ones are not begun.
+  void Stop();
+
+ private:
+  struct Offered {
+    std::weak_ptr<SceneHost> host;
+    uint64_t memory_bytes = 0;
+    FrameRequest frame;
+  };
+
+  void Begin();
+  void End();
+  // Needs mutex_.
+  void SubmitIfIdle();
+
+  void Render(const absl::Status& turn);
+
+  JobQueue& queue_;
+  WorkerPool& pool_;
+  const bool on_;
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  // Guarded by mutex_.
+  std::optional<Offered> next_;
+  int asked_ = 0;
+  bool has_job_ = false;               // in the queue, or running
+  std::optional<CancelToken> cancel_;  // of the one that is rendered
+  bool stopping_ = false;
+};
+
+}  // namespace linetree
