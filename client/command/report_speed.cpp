@@ -22,8 +22,8 @@ constexpr size_t kSeriesOfAPlot = 7;
 SpeedPlan PlanOf(const ReportOptions& options) {
   SpeedPlan plan;
   plan.scenes_dir = options.scenes_dir;
-  plan.base.options.width = plan.base.options.height = options.quick ? 160 : 512;
-  plan.base.options.repeats = options.quick ? 1 : 3;
+  plan.base.options.width = plan.base.options.height = options.quick ? 192 : 512;
+  plan.base.options.repeats = 3;
   plan.flights.still_frames = options.quick ? 3 : 12;
   return plan;
 }
@@ -97,7 +97,7 @@ std::vector<Plot> SweepSectionPlots(const Json& result) {
   const PlotAxis x{.label = name, .logarithmic = IsLogarithmic(name)};
   return {{"classical / cached over " + name,
            x,
-           {.label = "ratio", .bands = {kEven}},
+           {.label = "ratio", .logarithmic = true, .bands = {kEven}},
            SeriesOf(result.at("rows"), Gain)},
           {"cached frames over " + name,
            x,
@@ -120,7 +120,7 @@ std::vector<ReportGoal> BeyondGoal(const std::string& what, const Json& rows) {
 // The frames of one view, one after the other.
 std::vector<Plot> FramesPlots(const Json& result) {
   const PlotAxis frame{.label = "frame of the same view"};
-  const PlotAxis ratio{.label = "classical / cached", .bands = {kEven}};
+  const PlotAxis ratio{.label = "classical / cached", .logarithmic = true, .bands = {kEven}};
   std::vector<Plot> plots;
   for (const Json& row : result.at("rows")) {
     if (plots.empty() || plots.back().series.size() == kSeriesOfAPlot) {

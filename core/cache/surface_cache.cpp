@@ -24,13 +24,13 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
       memory_bytes_(memory_bytes),
       store_(tracer.scene(), memory_bytes) {}
 
-SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon)
-    : cache_(cache), epsilon_(epsilon), lock_(cache.mutex_) {}
+SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon, uint32_t points)
+    : cache_(cache), epsilon_(epsilon), points_(points), lock_(cache.mutex_) {}
 
 KnownLights SurfaceCache::Reader::Find(const Hit& hit) const {
   const auto object = static_cast<size_t>(hit.object);
   const SurfaceTree* tree = cache_.store_.Get(object);
-  if (tree != nullptr) return tree->Find(hit, epsilon_, cache_.clock_);
+  if (tree != nullptr) return tree->Find(hit, epsilon_, cache_.clock_, points_);
   cache_.store_.Want(object);
   return {};
 }

@@ -40,8 +40,10 @@ class SurfaceCache {
   // Holds the lock: keep it short, a part of a frame.
   class Reader : public LightLists {
    public:
-    // Diffuse sums are used where they meet `epsilon`; at 0 never.
-    explicit Reader(const SurfaceCache& cache, double epsilon = 0);
+    // Diffuse sums are used where they meet `epsilon`; at 0 never. Each hit that Find is asked for
+    // counts as `points` uses: readers of different frames stand for different numbers of points
+    // at the same time, and nobody knows whose uses it is that Refine finds.
+    explicit Reader(const SurfaceCache& cache, double epsilon = 0, uint32_t points = 1);
     KnownLights Find(const Hit& hit) const override;
 
     // The object's tree, for those who look cells up themselves; null where there is none yet,
@@ -53,6 +55,7 @@ class SurfaceCache {
    private:
     const SurfaceCache& cache_;
     const double epsilon_;
+    const uint32_t points_;
     std::shared_lock<std::shared_mutex> lock_;
   };
 

@@ -1,6 +1,7 @@
 #include "core/render/answer_rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 #include "absl/container/flat_hash_map.h"
@@ -255,23 +256,25 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     }
     // The last wave has nobody to tell where rays go.
     const bool is_last = wave == kWaves - 1;
+    // Each ray of the wave stands for so many.
+    const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
+    const auto points = static_cast<uint32_t>(std::lround(std::max(1.0, weight)));
     std::mutex samples_mutex;
     std::vector<PathCache::Sample> samples;
     ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
       std::vector<PathCache::Sample> own;
       {
-        const SurfaceCache::Reader lights(trees.surfaces, InterpolationError());
+        const SurfaceCache::Reader lights(trees.surfaces, InterpolationError(), points);
         const PathCache::Reader paths(trees.paths, options_.limits, is_last ? nullptr : &own);
         for (size_t k = begin; k < end; ++k) AnswerWithTrees(part[k], lights, paths, counts);
       }
       std::lock_guard lock(samples_mutex);
       samples.insert(samples.end(), own.begin(), own.end());
     });
-    const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
     if (IsCancelled()) return;
     SurfaceCache::Thrift thrift;
     thrift.ahead = options_.ahead;
-    uint64_t certified = trees.surfaces.Refine(weight, loop, thrift).cells;
+    uint64_t certified = trees.surfaces.Refine(/*weight=*/1, loop, thrift).cells;
     if (!is_last) {
       certified += trees.paths.Refine(options_.limits, samples, weight, loop, options_.ahead);
     }

@@ -20,12 +20,12 @@ SurfaceTree::SurfaceTree(const Object& object)
   for (int face = 0; face < faces; ++face) forms_.push_back(chart_.FormOf(face));
 }
 
-KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now) const {
+KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now, uint32_t points) const {
   KnownLights known;
   if (!chart_.IsOn(hit.face, hit.point)) return known;
   const SurfacePoint point = chart_.Locate(hit.face, hit.point);
   const SurfaceNode& node = cells_.Find(point.patch, CellAt(point, kMaxSurfaceDepth), now);
-  node.uses.fetch_add(1, std::memory_order_relaxed);
+  node.uses.fetch_add(points, std::memory_order_relaxed);
   if (!node.payload || !node.payload->HoldAt(hit.point)) return known;
   known.lists = node.payload->lights.data();
   const double scale = std::ldexp(1.0, node.cell.depth);

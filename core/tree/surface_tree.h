@@ -34,8 +34,9 @@ class SurfaceTree {
   const CellTree<SurfaceTraits>& cells() const { return cells_; }
   const SurfaceChart::FaceForm& FormOf(int face) const { return forms_[static_cast<size_t>(face)]; }
 
-  // What the smallest cell knows that holds the hit, with sums that meet `epsilon`. Counts a use.
-  KnownLights Find(const Hit& hit, double epsilon, uint32_t now) const;
+  // What the smallest cell knows that holds the hit, with sums that meet `epsilon`. Counts a use,
+  // which stands for `points` of them.
+  KnownLights Find(const Hit& hit, double epsilon, uint32_t now, uint32_t points = 1) const;
 
   uint64_t CountBytes() const;
 

@@ -20,9 +20,9 @@ class SurfaceCacheTest : public testing::Test {
   SurfaceCacheTest() : scene_(test::BallsOnFloor(6, 90)), tracer_(*scene_) {}
 
   // Looks up the hits of random eye rays.
-  int Use(const SurfaceCache& cache, uint64_t seed, int rays) {
+  int Use(const SurfaceCache& cache, uint64_t seed, int rays, uint32_t points = 1) {
     test::Random random(seed);
-    const SurfaceCache::Reader lists(cache);
+    const SurfaceCache::Reader lists(cache, 0, points);
     int known = 0;
     for (int i = 0; i < rays; ++i) {
       const Vec3d eye = random.InBox({-5, -9, 1}, {5, -7, 6});
@@ -55,6 +55,24 @@ TEST_F(SurfaceCacheTest, UndecidedCellsAreDividedWhereTheyAreUsedMuch) {
     many.Refine(100, kSerial);
   }
   EXPECT_GT(many.CellCount(), 10 * few.CellCount());
+}
+
+// A reader whose uses stand for many points leaves those of others, which stand for themselves, as
+// they are.
+TEST_F(SurfaceCacheTest, EachUseCountsAsManyPointsAsItsReaderSays) {
+  SurfaceCache plain(tracer_, 10'000'000), weighted(tracer_, 10'000'000);
+  SurfaceCache mixed(tracer_, 10'000'000);
+  for (int round = 0; round < 4; ++round) {
+    Use(plain, 2, 500);
+    plain.Refine(100, kSerial);
+    Use(weighted, 2, 500, 100);
+    weighted.Refine(1, kSerial);
+    Use(mixed, 2, 500);
+    Use(mixed, 2, 5, 100);
+    mixed.Refine(1, kSerial);
+  }
+  EXPECT_EQ(weighted.CellCount(), plain.CellCount());
+  EXPECT_LT(10 * mixed.CellCount(), plain.CellCount());
 }
 
 TEST_F(SurfaceCacheTest, BytesAreExactAndWithinTheBudget) {

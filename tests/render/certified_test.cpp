@@ -171,6 +171,34 @@ TEST(CertifiedTest, InterpolatedFramesAreWithinEpsilon) {
   EXPECT_GT(listed, 20000u);
 }
 
+// What frames learn they learn for all: many at a time divide cells no further than one after the
+// other. Which cells there are depends on who comes first, but not by much.
+TEST(CertifiedTest, FramesAtTheSameTimeBuildAboutWhatFramesInTurnDo) {
+  const auto scene = test::BallsOnFloor(12, 82);
+  constexpr int kClients = 4, kFrames = 6;
+  const auto cells_of = [&](bool at_the_same_time) {
+    WorkerPool pool(2);
+    SceneHost host(scene);
+    const auto fly = [&] {
+      for (int frame = 0; frame < kFrames; ++frame) {
+        test::RenderFrame(host, Request(*scene, Mode::kCached, 128), pool);
+      }
+    };
+    std::vector<std::thread> clients;
+    for (int c = 0; c < kClients; ++c) {
+      clients.emplace_back(fly);
+      if (!at_the_same_time) clients.back().join();
+    }
+    for (std::thread& client : clients) {
+      if (client.joinable()) client.join();
+    }
+    return host.surfaces().CellCount();
+  };
+  const uint64_t in_turn = cells_of(false), together = cells_of(true);
+  EXPECT_GT(in_turn, 100u);
+  EXPECT_LE(together, 2 * in_turn);
+}
+
 TEST(CertifiedTest, ThreadsAndClientsChangeNothing) {
   const auto scene = test::BallsOnFloor(12, 82);
   CacheOptions options;
