@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/policy/policies.h"
 #include "server/log_capture.h"
 #include "server/log_format.h"
 #include "server/log_sink.h"
@@ -60,6 +61,14 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->default_str("1GiB");
+  app.add_option("--policy", options.policy,
+                 "what makes room in a full cache is picked by one of " + PolicyNames())
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--record-trace", options.record_trace,
+                 "at the end, write what sessions have used to this file, and its costs beside it; "
+                 "see linetree cache sim")
+      ->type_name("FILE");
   app.add_option(
          "--audit", options.audit_share,
          "share of the answers from caches, in [0, 1], that is traced again in the background "

@@ -36,6 +36,12 @@ struct NamedHost {
 
 inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
 
+// How scenes' caches evict, and who records what they are asked for (null: nobody).
+struct SceneEviction {
+  std::string policy = kDefaultPolicy;
+  TraceRecorder* recorder = nullptr;
+};
+
 class SceneStore {
  public:
   struct Limits {
@@ -44,7 +50,8 @@ class SceneStore {
     uint64_t memory_bytes = uint64_t{1} << 30;  // for the caches of all scenes together
   };
 
-  explicit SceneStore(const Limits& limits) : limits_(limits) {}
+  explicit SceneStore(const Limits& limits, SceneEviction eviction = {})
+      : limits_(limits), eviction_(std::move(eviction)) {}
 
   // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
   // ALREADY_EXISTS unless `replace`: then it takes over what is known of all that is the same in
@@ -82,6 +89,7 @@ class SceneStore {
   absl::Status Unknown(const std::string& name, absl::string_view path) const;
 
   const Limits limits_;
+  const SceneEviction eviction_;
   mutable std::mutex mutex_;
   // Guarded by mutex_.
   Hosts hosts_;

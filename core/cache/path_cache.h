@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/block_ledger.h"
 #include "core/cache/change_reach.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
@@ -99,6 +101,12 @@ class PathCache {
   // As SurfaceCache::Adopt.
   Adopted Adopt(PathCache& former, const ChangeReach& reach);
 
+  // As SurfaceCache's.
+  void EndFrame(const FrameMark& mark);
+  void SetPolicy(std::string_view name);
+  Evicted evicted() const;
+  uint64_t LedgerBytes() const;
+
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
@@ -123,19 +131,25 @@ class PathCache {
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.
   uint64_t BudgetOf(const Forest& forest) const;
+  // Down to what a pass leaves. Needs refine_mutex_.
   void Evict();
 
   const Tracer& tracer_;
   const PathCertifier certifier_;
   const SolidInteriors interiors_;
   const int max_depth_;
-  std::vector<bool> branches_;  // by object: whether it reflects or transmits
-  std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
+  std::vector<bool> branches_;       // by object: whether it reflects or transmits
+  mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  // Guarded by refine_mutex_:
+  BuildCosts costs_;
+  std::string policy_name_;
+  uint32_t frame_begin_ = 1, pinned_ = 1;  // as SurfaceCache's
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;
   std::vector<std::unique_ptr<Forest>> forests_;
-  uint32_t clock_ = 1;
+  Evicted evicted_;                  // from forests that are gone
+  std::atomic<uint32_t> clock_ = 1;  // not guarded
 };
 
 }  // namespace linetree

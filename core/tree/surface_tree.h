@@ -37,6 +37,7 @@ class SurfaceTree {
   KnownLights Find(const Hit& hit, double epsilon, uint32_t now) const;
 
   uint64_t CountBytes() const;
+  uint64_t OwnBytes() const;  // without what cells know and their children
 
  private:
   // (s, t): the hit's coordinates in the cell.
