@@ -8,8 +8,10 @@
 #include "client/library/status.h"
 #include "core/io/camera_path.h"
 #include "core/io/scene_edit.h"
+#include "core/io/trace_file.h"
 #include "core/io/wire.h"
 #include "core/io/wire_frame.h"
+#include "core/policy/policies.h"
 #include "core/store/data_folder.h"
 #include "server/limit_list.h"
 #include "server/scene_root.h"
@@ -40,11 +42,12 @@ std::unique_ptr<CellStore> OpenCells(const ServerOptions& options,
 Backend::Backend(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
     : options_(options),
       log_(std::move(log)),
+      recorder_(options.record_trace.empty() ? nullptr : std::make_unique<TraceRecorder>()),
       cells_(OpenCells(options, log_)),
       scenes_({.max_scenes = options.limits.max_scenes,
                .max_objects = options.limits.max_objects_in_all_scenes,
                .memory_bytes = options.memory_bytes},
-              cells_.get()),
+              {options.policy, recorder_.get()}, cells_.get()),
       pool_(options.threads),
       frame_bytes_(options.limits.max_frame_bytes),
       flights_(options.limits.max_flights),
@@ -115,6 +118,18 @@ absl::Status Backend::WarmUp(const std::function<void()>& ready) {
     });
   }
   return absl::OkStatus();
+}
+
+void Backend::SaveTrace() const {
+  if (recorder_ == nullptr) return;
+  const Trace trace = recorder_->Take();
+  if (auto status = WriteTrace(trace, options_.record_trace); !status.ok()) {
+    return log_->error("--record-trace: {}", std::string(status.message()));
+  }
+  log_->info("{}: {} uses recorded", options_.record_trace, trace.size());
+  if (recorder_->dropped() > 0) {
+    log_->warn("{}: {} more found no room", options_.record_trace, recorder_->dropped());
+  }
 }
 
 absl::StatusOr<std::vector<FrameRequest>> Backend::WarmUpFrames(const v1::WarmUp& warm_up) const {
@@ -283,6 +298,25 @@ v1::GetLimitsReply Backend::GetLimits() const {
     out->set_value(limit.value);
     out->set_bounds(std::string(limit.bounds));
   }
+  return reply;
+}
+
+absl::StatusOr<v1::TuneCacheReply> Backend::TuneCache(const v1::TuneCacheRequest& request) const {
+  auto scene = scenes_.Find(request.scene(), "scene");
+  if (!scene.ok()) return scene.status();
+  if (request.has_policy()) {
+    if (request.policy().empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("policy: expected one of ", PolicyNames(), ", got none"));
+    }
+    if (auto status = scene->host->SetPolicy(request.policy()); !status.ok()) {
+      return absl::Status(status.code(), absl::StrCat("policy: ", status.message()));
+    }
+    log_->info("scene {} evicts by {}", scene->name, request.policy());
+  }
+  v1::TuneCacheReply reply;
+  reply.set_policy(scene->host->policy());
+  reply.set_memory_budget_bytes(scene->memory_bytes);
   return reply;
 }
 

@@ -43,6 +43,8 @@ class Backend {
   // Begins the warm-ups that options.warm_ups names, and calls `ready` at the end of the last one,
   // or at once if there are none. Errors are those of the paths.
   absl::Status WarmUp(const std::function<void()>& ready);
+  // Writes what was recorded, if anything was to be; errors are logged.
+  void SaveTrace() const;
   // Gives up what nobody waits for; `ready` is not called any more.
   void StopBackground() {
     warm_ups_.Stop();
@@ -58,6 +60,7 @@ class Backend {
                                                    const CancelToken& cancel);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
   v1::GetLimitsReply GetLimits() const;
+  absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) const;
   // Leaves the timer where the answers have become a message.
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
                                                const CancelToken& cancel, FrameTimer& timer);
@@ -104,6 +107,7 @@ class Backend {
   const ServerOptions options_;
   const std::shared_ptr<spdlog::logger> log_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  const std::unique_ptr<TraceRecorder> recorder_;  // null: nothing is recorded
   const std::unique_ptr<CellStore> cells_;  // null: nothing is kept
   SceneStore scenes_;
   WorkerPool pool_;

@@ -121,4 +121,10 @@ grpc::ServerUnaryReactor* Gate::GetLimits(Context* context, const Bytes* request
   });
 }
 
+grpc::ServerUnaryReactor* Gate::TuneCache(Context* context, const Bytes* request, Bytes* reply) {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kAdmin, "TuneCache", [&] {
+    return service_.TuneCache(context, request, reply);
+  });
+}
+
 }  // namespace linetree

@@ -43,6 +43,8 @@ class Gate final : public RawService {
   grpc::ServerUnaryReactor* GetStats(Context* context, const Bytes* request, Bytes* reply) override;
   grpc::ServerUnaryReactor* GetLimits(Context* context, const Bytes* request,
                                       Bytes* reply) override;
+  grpc::ServerUnaryReactor* TuneCache(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
 
  private:
   // Lets the call through, or ends it.

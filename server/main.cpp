@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/policy/policies.h"
 #include "core/store/data_folder.h"
 #include "server/log_capture.h"
 #include "server/log_format.h"
@@ -62,6 +63,14 @@ void AddServingFlags(CLI::App& app, ServerOptions& options, Flags& flags) {
                  "bytes for the caches of all scenes; KiB, MiB, GiB are understood")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->default_str("1GiB");
+  app.add_option("--policy", options.policy,
+                 "what makes room in a full cache is picked by one of " + PolicyNames())
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--record-trace", options.record_trace,
+                 "at the end, write what sessions have used to this file, and its costs beside it; "
+                 "see linetree cache sim")
+      ->type_name("FILE");
   app.add_flag("!--no-prefetch", options.prefetch,
                "do not render ahead along flights while nothing else is to be done");
   app.add_option("--data-dir", options.data_folder,

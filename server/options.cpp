@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "core/io/wire.h"
+#include "core/policy/policies.h"
 #include "server/scene_store.h"
 
 namespace linetree {
@@ -106,6 +107,26 @@ absl::Status CheckSecurity(const ServerOptions& options) {
   return CheckReach("--http", options.http, options);
 }
 
+absl::Status CheckCache(const ServerOptions& options) {
+  if (auto made = MakePolicy(options.policy, 0); !made.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("--policy: ", made.status().message()));
+  }
+  const auto trace_folder = std::filesystem::path(options.record_trace).parent_path();
+  std::error_code error;
+  if (!trace_folder.empty() && !std::filesystem::is_directory(trace_folder, error)) {
+    return Expected("--record-trace", "a file in a folder that exists", options.record_trace);
+  }
+  if (options.memory_bytes < kMinMemoryBytes) {
+    return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
+                    absl::StrCat(options.memory_bytes));
+  }
+  if (options.store_bytes < kMinStoreBytes) {
+    return Expected("--store-bytes", absl::StrCat("at least ", kMinStoreBytes, " bytes"),
+                    absl::StrCat(options.store_bytes));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<SceneFile> ParseSceneFlag(const std::string& value, absl::string_view flag) {
@@ -140,14 +161,7 @@ absl::Status ValidateServerOptions(const ServerOptions& options) {
   status = CheckRange("--max-stall-s", options.max_stall_s.count(), 0,
                       std::chrono::seconds(kMaxFlight).count());
   if (!status.ok()) return status;
-  if (options.memory_bytes < kMinMemoryBytes) {
-    return Expected("--memory", absl::StrCat("at least ", kMinMemoryBytes, " bytes"),
-                    absl::StrCat(options.memory_bytes));
-  }
-  if (options.store_bytes < kMinStoreBytes) {
-    return Expected("--store-bytes", absl::StrCat("at least ", kMinStoreBytes, " bytes"),
-                    absl::StrCat(options.store_bytes));
-  }
+  if (auto checked = CheckCache(options); !checked.ok()) return checked;
   if (!(options.audit_share >= 0 && options.audit_share <= 1)) {
     return Expected("--audit", "a number in [0, 1]", absl::StrCat(options.audit_share));
   }

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "core/cache/cache_options.h"
 #include "core/render/options.h"
 #include "server/limits.h"
 #include "server/tls.h"
@@ -47,6 +48,10 @@ struct ServerOptions {
   int render_slots = 2;
   // For the caches of all scenes together.
   uint64_t memory_bytes = uint64_t{1} << 30;
+  // By which caches evict, of AllPolicies (core/policy).
+  std::string policy = kDefaultPolicy;
+  // Where to write, at the end, what sessions have used; empty: nowhere.
+  std::string record_trace;
   // Where cells are kept from one process to the next, and how large that file may become; empty:
   // they are not.
   std::string data_folder;

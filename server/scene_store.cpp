@@ -45,9 +45,11 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
     ShareMemory();
     return found->second;
   }
-  NamedHost added{
-      name, std::make_shared<SceneHost>(std::move(scene), CacheOptions{ShareOf(*former)}),
-      std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(), former->weight};
+  const CacheOptions cache{.memory_bytes = ShareOf(*former), .policy = eviction_.policy};
+  NamedHost added{name, std::make_shared<SceneHost>(std::move(scene), cache),
+                  std::make_shared<AuditCounts>(), std::make_shared<AnswerCounts>(),
+                  former->weight};
+  added.host->RecordTo(eviction_.recorder);
   added.content = std::move(content);
   if (former->host) {
     // Outside the lock: it waits for those who read.

@@ -39,6 +39,12 @@ struct NamedHost {
 
 inline constexpr double kMinSceneWeight = 1e-3, kMaxSceneWeight = 1e3;
 
+// How scenes' caches evict, and who records what they are asked for (null: nobody).
+struct SceneEviction {
+  std::string policy = kDefaultPolicy;
+  TraceRecorder* recorder = nullptr;
+};
+
 class SceneStore {
  public:
   struct Limits {
@@ -48,8 +54,8 @@ class SceneStore {
   };
 
   // `cells` is where the scenes' cells are kept, and outlives the store; null: nowhere.
-  explicit SceneStore(const Limits& limits, CellStore* cells = nullptr)
-      : limits_(limits), cells_(cells) {}
+  explicit SceneStore(const Limits& limits, SceneEviction eviction = {}, CellStore* cells = nullptr)
+      : limits_(limits), eviction_(std::move(eviction)), cells_(cells) {}
 
   // Keeps the scene under `name`. The same content again keeps the warm cache; other content is
   // ALREADY_EXISTS unless `replace`: then it takes over what is known of all that is the same in
@@ -90,6 +96,7 @@ class SceneStore {
   void KeepCells(NamedHost& scene) const;
 
   const Limits limits_;
+  const SceneEviction eviction_;
   CellStore* const cells_;
   mutable std::mutex mutex_;
   // Guarded by mutex_.

@@ -180,6 +180,7 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   grpc_->Shutdown(std::chrono::system_clock::now() +
                   std::min<steady_clock::duration>(left, kLastReplies_ms));
   grpc_.reset();
+  backend_.SaveTrace();
 }
 
 Server::~Server() {

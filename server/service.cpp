@@ -188,4 +188,15 @@ grpc::ServerUnaryReactor* Service::GetLimits(Context* context, const Bytes* requ
       });
 }
 
+grpc::ServerUnaryReactor* Service::TuneCache(Context* context, const Bytes* request, Bytes* reply) {
+  const CallInfo info = ReadCallInfo(context);
+  const auto work = [this, request, id = info.request_id](const CancelToken&) {
+    const LogFields fields(LogFields::Fields{{"request_id", id}});
+    return Handle<v1::TuneCacheRequest>(
+        *request, backend_.limits().max_request_bytes,
+        [this](const v1::TuneCacheRequest& r) { return backend_.TuneCache(r); });
+  };
+  return OnLoader(info, context, reply, work);
+}
+
 }  // namespace linetree

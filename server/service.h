@@ -19,7 +19,8 @@ using RawService = v1::RadianceCache::WithRawCallbackMethod_LoadScene<
                             v1::RadianceCache::WithRawCallbackMethod_GetStats<
                                 v1::RadianceCache::WithRawCallbackMethod_GetLimits<
                                     v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
-                                        v1::RadianceCache::Service>>>>>>>>>>;
+                                        v1::RadianceCache::WithRawCallbackMethod_TuneCache<
+                                            v1::RadianceCache::Service>>>>>>>>>>>;
 
 class Service final : public RawService {
  public:
@@ -46,6 +47,8 @@ class Service final : public RawService {
                                       Bytes* reply) override;
   grpc::ServerUnaryReactor* GetStats(Context* context, const Bytes* request, Bytes* reply) override;
   grpc::ServerUnaryReactor* GetLimits(Context* context, const Bytes* request,
+                                      Bytes* reply) override;
+  grpc::ServerUnaryReactor* TuneCache(Context* context, const Bytes* request,
                                       Bytes* reply) override;
 
  private:

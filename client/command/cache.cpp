@@ -6,6 +6,7 @@ namespace linetree {
 void AddCache(CLI::App& parent, Commands& commands) {
   CLI::App* app = parent.add_subcommand("cache", "Eviction policies");
   app->require_subcommand(1);
+  AddCachePolicy(*app, commands);
   AddCacheSim(*app, commands);
 }
 

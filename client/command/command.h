@@ -40,6 +40,7 @@ void AddCompare(CLI::App& parent, Commands& commands);
 void AddLoad(CLI::App& parent, Commands& commands);
 void AddStore(CLI::App& parent, Commands& commands);
 void AddCache(CLI::App& parent, Commands& commands);
+void AddCachePolicy(CLI::App& cache, Commands& commands);
 void AddCacheSim(CLI::App& cache, Commands& commands);
 // `bench`: one command for each measurement.
 void AddBench(CLI::App& parent, Commands& commands);

@@ -8,6 +8,7 @@
 #include "client/command/parse_values.h"
 #include "client/command/table.h"
 #include "core/io/wire.h"
+#include "core/policy/policies.h"
 
 namespace linetree {
 namespace {
@@ -70,6 +71,15 @@ void AddTlsFlags(CLI::App& app, ConnectionFlags& flags, CLI::Option* local) {
 
 }  // namespace
 
+CLI::Validator IsPolicy() {
+  return CLI::Validator(
+      [](std::string& name) {
+        const auto made = MakePolicy(name, 0);
+        return made.ok() ? std::string() : std::string(made.status().message());
+      },
+      "");
+}
+
 void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags) {
   constexpr const char* kGroup = "Where";
   auto* server = app.add_option("--server", flags.server, "Address of a linetreed")
@@ -93,6 +103,11 @@ void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags) {
   app.add_option("--memory", flags.memory_bytes, "Bytes that the cache may hold; 64m, 2g, … too")
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(false))
+      ->needs(local)
+      ->group(kGroup);
+  app.add_option("--policy", flags.policy, "What makes room in a full cache; see cache sim --help")
+      ->type_name("NAME")
+      ->check(IsPolicy())
       ->needs(local)
       ->group(kGroup);
 }

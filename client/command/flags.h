@@ -26,6 +26,7 @@ struct ConnectionFlags {
   bool local = false;
   int threads = 0;                                      // --local only; 0: all hardware threads
   uint64_t memory_bytes = CacheOptions{}.memory_bytes;  // --local only
+  std::string policy = kDefaultPolicy;                  // --local only
 };
 void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags);
 
@@ -74,6 +75,9 @@ void AddQuietFlag(CLI::App& app, bool& quiet);
 
 // The meaning of the colours of --layer verdict and --layer source, for --help.
 std::string LegendText();
+
+// Accepts names of policies.
+CLI::Validator IsPolicy();
 
 // Accepts names that end with one of the extensions, each written like ".png".
 CLI::Validator HasExtension(std::vector<std::string> extensions);

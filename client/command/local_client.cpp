@@ -8,8 +8,8 @@
 
 namespace linetree {
 
-LocalClient::LocalClient(int threads, uint64_t memory_bytes)
-    : memory_bytes_(memory_bytes), pool_(threads) {}
+LocalClient::LocalClient(int threads, uint64_t memory_bytes, std::string policy)
+    : memory_bytes_(memory_bytes), policy_(std::move(policy)), pool_(threads) {}
 
 absl::StatusOr<LocalClient::HostPointer> LocalClient::Find(const std::string& name) const {
   const std::lock_guard lock(mutex_);
@@ -25,7 +25,8 @@ absl::StatusOr<v1::SceneInfo> LocalClient::AddScene(const std::string& name,
   const std::lock_guard lock(mutex_);
   HostPointer& host = hosts_[name];
   if (host == nullptr || (replace && host->scene().version != scene->version)) {
-    host = std::make_shared<SceneHost>(scene, CacheOptions{.memory_bytes = memory_bytes_});
+    host = std::make_shared<SceneHost>(
+        scene, CacheOptions{.memory_bytes = memory_bytes_, .policy = policy_});
   } else if (host->scene().version != scene->version) {
     return absl::AlreadyExistsError(absl::StrCat("there is another scene '", name, "'"));
   }
@@ -133,6 +134,18 @@ absl::StatusOr<v1::GetStatsReply> LocalClient::GetStats(const std::string& scene
 
 absl::StatusOr<v1::GetLimitsReply> LocalClient::GetLimits() {
   return absl::UnimplementedError("--limits: a server has limits, --local has none to show");
+}
+
+absl::StatusOr<v1::TuneCacheReply> LocalClient::TuneCache(const v1::TuneCacheRequest& request) {
+  const absl::StatusOr<HostPointer> host = Find(request.scene());
+  if (!host.ok()) return host.status();
+  if (request.has_policy()) {
+    if (auto s = (*host)->SetPolicy(request.policy()); !s.ok()) return s;
+  }
+  v1::TuneCacheReply reply;
+  reply.set_policy((*host)->policy());
+  reply.set_memory_budget_bytes(memory_bytes_);
+  return reply;
 }
 
 }  // namespace linetree

@@ -17,8 +17,9 @@ namespace linetree {
 
 class LocalClient : public Client {
  public:
-  // threads as for WorkerPool; memory_bytes is the budget of each scene's cache.
-  LocalClient(int threads, uint64_t memory_bytes);
+  // threads as for WorkerPool; memory_bytes is the budget of each scene's cache, which evicts by
+  // `policy`, one of AllPolicies.
+  LocalClient(int threads, uint64_t memory_bytes, std::string policy = kDefaultPolicy);
 
   // As LoadScene, for a scene that has been built already.
   absl::StatusOr<v1::SceneInfo> AddScene(const std::string& name,
@@ -47,9 +48,11 @@ class LocalClient : public Client {
   absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) override;
   // UNIMPLEMENTED: limits are a server's.
   absl::StatusOr<v1::GetLimitsReply> GetLimits() override;
+  absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) override;
 
  private:
   const uint64_t memory_bytes_;
+  const std::string policy_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   WorkerPool pool_;
   mutable std::mutex mutex_;

@@ -64,7 +64,8 @@ absl::StatusOr<ClientOptions> ReadClientOptions(const ConnectionFlags& flags) {
 }
 
 absl::StatusOr<std::unique_ptr<Client>> Connect(const ConnectionFlags& flags) {
-  if (flags.local) return std::make_unique<LocalClient>(flags.threads, flags.memory_bytes);
+  if (flags.local)
+    return std::make_unique<LocalClient>(flags.threads, flags.memory_bytes, flags.policy);
   const auto options = ReadClientOptions(flags);
   if (!options.ok()) return options.status();
   return Client::Connect(flags.server, *options);

@@ -67,6 +67,9 @@ nlohmann::json SceneStatsJson(const SceneStats& scene) {
           {"totals", StatsJson(FrameStatsFromWire(scene.totals()), 0, 0)},
           {"cache_bytes", scene.cache_bytes()},
           {"cells", scene.cells()},
+          {"eviction_policy", scene.eviction_policy()},
+          {"cells_evicted", scene.cells_evicted()},
+          {"bytes_evicted", scene.bytes_evicted()},
           {"memory", std::move(memory)},
           {"objects", std::move(objects)},
           {"answers", AnswersJson(scene.answers())},
@@ -109,7 +112,8 @@ std::string SceneTable(const v1::GetStatsReply& reply) {
                   Grouped(totals.pixels), Percent(HitRate(totals)),
                   Grouped(totals.base.intersect + totals.ip.intersect),
                   Grouped(totals.base.shade + totals.ip.shade), Grouped(scene.cells()),
-                  Grouped(totals.cells_evicted), Bytes(scene.cache_bytes())});
+                  Grouped(totals.cells_evicted + scene.cells_evicted()),
+                  Bytes(scene.cache_bytes())});
   }
   return table.ToString();
 }

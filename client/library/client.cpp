@@ -68,6 +68,10 @@ class GrpcClient final : public Client {
     return Call<v1::GetLimitsReply>(&Stub::GetLimits, v1::GetLimitsRequest());
   }
 
+  absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) override {
+    return Call<v1::TuneCacheReply>(&Stub::TuneCache, request);
+  }
+
   absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
                                     const std::string& camera_name, bool all_layers,
                                     const Progress& progress) override;

@@ -73,6 +73,8 @@ class Client {
   // Empty scene name: all scenes.
   virtual absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) = 0;
   virtual absl::StatusOr<v1::GetLimitsReply> GetLimits() = 0;
+  // Without a policy in it, asks which one a scene has.
+  virtual absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) = 0;
 };
 
 }  // namespace linetree

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/tree/cell.h"
 
 namespace linetree {
+
+inline constexpr char kDefaultPolicy[] = "reuse";
 
 struct CacheOptions {
   // For cells, interpolants and corner samples together. 0 turns the cache off.
@@ -18,6 +21,9 @@ struct CacheOptions {
   // Frames by packets ask the surface trees everywhere and let them grow, also where that does not
   // pay: for tests and audits of what the trees say.
   bool always_ask = false;
+  // By which surface trees and certified linetrees evict: one of AllPolicies (core/policy), or
+  // empty for the plain order of their stores, least recently used first.
+  std::string policy = kDefaultPolicy;
 };
 
 // Cells that were certified for requests that nobody had made yet (RenderOptions::ahead), and those

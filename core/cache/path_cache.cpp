@@ -4,16 +4,9 @@
 #include <tuple>
 #include <utility>
 
-namespace linetree {
+#include "core/cache/path_forest.h"
 
-// The trees for one PathLimits.
-struct PathCache::Forest {
-  Forest(const Scene& scene, const PathLimits& path_limits, uint64_t memory_bytes)
-      : limits(path_limits), store(scene, memory_bytes) {}
-  PathLimits limits;
-  TreeStore<PathTree> store;
-  uint32_t last_used = 0;
-};
+namespace linetree {
 
 // The samples that fall into one leaf.
 struct PathCache::Group {
@@ -23,6 +16,7 @@ struct PathCache::Group {
   int barren_levels = 0;  // how many cells in a row around this one have saved nothing
   std::vector<Sample> samples;
   std::unique_ptr<const CellPaths> paths{};  // the result
+  float ns = 0;                              // what certifying took
 };
 
 PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
@@ -30,6 +24,7 @@ PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
       certifier_(tracer),
       interiors_(tracer),
       max_depth_(max_depth),
+      costs_(tracer.scene().objects.size()),
       memory_bytes_(memory_bytes) {
   const Scene& scene = tracer.scene();
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
@@ -118,13 +113,18 @@ Verdict PathCache::Reader::Interpolate(const Hit& hit, const Vec3d& direction, d
 PathCache::Forest& PathCache::OpenForest(const PathLimits& limits) {
   if (Forest* forest = FindForest(limits)) return *forest;
   if (forests_.size() >= kMaxPathForests) {
-    forests_.erase(
+    const auto oldest =
         std::min_element(forests_.begin(), forests_.end(),
-                         [](const auto& a, const auto& b) { return a->last_used < b->last_used; }));
+                         [](const auto& a, const auto& b) { return a->last_used < b->last_used; });
+    const TreeStore<PathTree>& store = (*oldest)->store;
+    evicted_.cells += store.evicted().cells + store.cell_count();
+    evicted_.bytes += store.evicted().bytes + store.byte_size();
+    forests_.erase(oldest);
   }
   const uint64_t used = UsedBytes();
-  forests_.push_back(std::make_unique<Forest>(tracer_.scene(), limits,
-                                              memory_bytes_ > used ? memory_bytes_ - used : 0));
+  forests_.push_back(std::make_unique<Forest>(
+      tracer_.scene(), limits, memory_bytes_ > used ? memory_bytes_ - used : 0, costs_));
+  forests_.back()->ledger.SetPolicy(policy_name_);
   return *forests_.back();
 }
 
@@ -194,6 +194,7 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
   allowance -= chosen.size();
   loop(chosen.size(), [&](size_t i) {
     Group& group = *chosen[i];
+    const BuildTimer timer(group.ns);
     const ObjectChart& chart = forest.store.Get(static_cast<size_t>(group.object))->chart();
     group.paths = std::make_unique<const CellPaths>(
         certifier_.Certify(group.object, chart, group.node->root, BoxOf(group.node->cell),
@@ -205,6 +206,7 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
   const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
+    if (group.paths) costs_.Add(static_cast<size_t>(group.object), group.ns);
     if (node.ahead && !refines_ahead_) {
       node.ahead = false;
       ++ahead_.used;
@@ -288,7 +290,6 @@ uint64_t PathCache::BudgetOf(const Forest& forest) const {
 
 // From the forests that were used longest ago on.
 void PathCache::Evict() {
-  std::unique_lock lock(mutex_);
   std::vector<Forest*> order;
   for (const auto& forest : forests_) order.push_back(forest.get());
   std::sort(order.begin(), order.end(),
@@ -299,8 +300,48 @@ void PathCache::Evict() {
     if (used <= target) return;
     const uint64_t excess = used - target;
     const uint64_t held = forest->store.byte_size();
-    forest->store.Evict(held > excess ? held - excess : 0);
+    forest->ledger.Evict(forest->store, held > excess ? held - excess : 0, pinned_, mutex_);
   }
+}
+
+void PathCache::EndFrame(const FrameMark& mark) {
+  std::unique_lock refining(refine_mutex_, std::defer_lock);
+  if (mark.recorder != nullptr) {
+    refining.lock();
+  } else if (!refining.try_lock()) {
+    return;
+  }
+  const uint64_t target = EvictionTarget(memory_bytes_);
+  for (const auto& forest : forests_) {
+    const uint64_t others = UsedBytes() - forest->store.byte_size();
+    forest->ledger.EndFrame(forest->store, frame_begin_, target > others ? target - others : 0,
+                            mark);
+  }
+  pinned_ = frame_begin_;
+  frame_begin_ = ++clock_;
+}
+
+void PathCache::SetPolicy(std::string_view name) {
+  std::lock_guard refining(refine_mutex_);
+  policy_name_ = std::string(name);
+  for (const auto& forest : forests_) forest->ledger.SetPolicy(name);
+}
+
+Evicted PathCache::evicted() const {
+  std::shared_lock lock(mutex_);
+  Evicted all = evicted_;
+  for (const auto& forest : forests_) {
+    all.cells += forest->store.evicted().cells;
+    all.bytes += forest->store.evicted().bytes;
+  }
+  return all;
+}
+
+uint64_t PathCache::LedgerBytes() const {
+  std::lock_guard refining(refine_mutex_);
+  uint64_t bytes = costs_.ByteSize();
+  for (const auto& forest : forests_) bytes += forest->ledger.ByteSize();
+  return bytes;
 }
 
 Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
@@ -310,7 +351,7 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
   {
     std::scoped_lock lock(mutex_, former.mutex_);
     former.memory_bytes_ = 0;
-    clock_ = former.clock_;
+    clock_ = former.clock_.load();
     for (const auto& forest : former.forests_) {
       const uint64_t before = forest->store.cell_count();
       Forest& own = OpenForest(forest->limits);
@@ -319,6 +360,7 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
         return tree.cells().Prune(/*covers=*/false,
                                   [&](const PathNode& node) { return reach.Touches(tree, node); });
       });
+      own.ledger.Reset();
       adopted.dropped += before;
     }
     former.forests_.clear();
@@ -335,6 +377,7 @@ void PathCache::SetMemoryBytes(uint64_t memory_bytes) {
     std::unique_lock lock(mutex_);
     memory_bytes_ = memory_bytes;
   }
+  for (const auto& forest : forests_) forest->ledger.Reset();  // they know another budget
   Evict();
 }
 

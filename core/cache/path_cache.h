@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/block_ledger.h"
 #include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
@@ -105,6 +107,11 @@ class PathCache {
   // As those of SurfaceCache. Of more path limits than there may be trees for, none are taken back.
   void SetJournal(CellJournal* journal) { journal_ = journal; }
   size_t Restore(const PathLimits& limits, std::span<KeptPathCell> cells);
+  // As SurfaceCache's.
+  void EndFrame(const FrameMark& mark);
+  void SetPolicy(std::string_view name);
+  Evicted evicted() const;
+  uint64_t LedgerBytes() const;
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
@@ -131,6 +138,7 @@ class PathCache {
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.
   uint64_t BudgetOf(const Forest& forest) const;
+  // Down to what a pass leaves. Needs refine_mutex_.
   void Evict();
 
   const Tracer& tracer_;
@@ -138,15 +146,20 @@ class PathCache {
   const SolidInteriors interiors_;
   const int max_depth_;
   CellJournal* journal_ = nullptr;
-  std::vector<bool> branches_;  // by object: whether it reflects or transmits
-  std::mutex refine_mutex_;     // one Refine at a time: nodes stay where they are outside it
-  bool refines_ahead_ = false;  // guarded by refine_mutex_
+  std::vector<bool> branches_;       // by object: whether it reflects or transmits
+  mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  // Guarded by refine_mutex_:
+  bool refines_ahead_ = false;
+  BuildCosts costs_;
+  std::string policy_name_;
+  uint32_t frame_begin_ = 1, pinned_ = 1;  // as SurfaceCache's
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;
   std::vector<std::unique_ptr<Forest>> forests_;
-  uint32_t clock_ = 1;
   AheadCounts ahead_;
+  Evicted evicted_;                  // from forests that are gone
+  std::atomic<uint32_t> clock_ = 1;  // not guarded
 };
 
 }  // namespace linetree

@@ -6,6 +6,9 @@
 
 namespace linetree {
 
+// Tells blocks from those of other caches.
+constexpr uint64_t kLedgerKind = 1;
+
 // A node whose lights are to be certified, and what comes after.
 struct SurfaceCache::Work {
   SurfaceNode* node = nullptr;
@@ -14,6 +17,7 @@ struct SurfaceCache::Work {
   const CellLights* parent = nullptr;
   std::unique_ptr<const CellLights> lights{};  // the result
   bool may_divide = true;
+  float ns = 0;  // what certifying took
 };
 
 SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses,
@@ -21,6 +25,8 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
     : certifier_(tracer, uses_functions),
       summer_(tracer.scene()),
       min_uses_(min_uses),
+      costs_(tracer.scene().objects.size()),
+      ledger_(kLedgerKind, costs_),
       memory_bytes_(memory_bytes),
       store_(tracer.scene(), memory_bytes) {}
 
@@ -111,6 +117,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
   loop(works.size(), [&](size_t i) {
     Work& work = works[i];
     if (work.node->payload) return;
+    const BuildTimer timer(work.ns);
     const SurfaceChart& chart = store_.Get(work.object)->chart();
     auto lights = std::make_unique<CellLights>(certifier_.Certify(
         static_cast<int>(work.object), chart, work.node->root, work.node->cell, work.parent));
@@ -130,6 +137,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       SurfaceNode& node = *work.node;
       if (!node.payload) {
         if (!work.lights) continue;  // the loop was cut short
+        costs_.Add(work.object, work.ns);
         if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
         node.ahead = thrift.ahead;
         ahead_.built += thrift.ahead ? 1 : 0;
@@ -179,8 +187,7 @@ SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop
     }
   }
   const uint64_t certified = CellCount() - before;
-  std::unique_lock lock(mutex_);
-  store_.Evict(EvictionTarget(memory_bytes_));
+  Evict();
   return {certified, is_limited ? thrift.most_work - left : 0};
 }
 
@@ -190,7 +197,9 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
   std::scoped_lock lock(mutex_, former.mutex_);
   const uint64_t before = former.store_.cell_count();
   former.memory_bytes_ = 0;
-  clock_ = former.clock_;
+  clock_ = former.clock_.load();
+  ledger_.Reset();
+  former.ledger_.Reset();
   if (change.lights) former.store_.Clear();
   store_.Adopt(former.store_, change, memory_bytes_, [&](SurfaceTree& tree) {
     if (!reach.TouchesShadows(tree.object())) return CellTree<SurfaceTraits>::Pruned();
@@ -204,9 +213,43 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
 
 void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {
   std::lock_guard refining(refine_mutex_);
-  std::unique_lock lock(mutex_);
-  memory_bytes_ = memory_bytes;
-  store_.Evict(EvictionTarget(memory_bytes_));
+  {
+    std::unique_lock lock(mutex_);
+    memory_bytes_ = memory_bytes;
+  }
+  ledger_.Reset();  // its policy knows another budget
+  Evict();
+}
+
+void SurfaceCache::Evict() {
+  ledger_.Evict(store_, EvictionTarget(memory_bytes_), pinned_, mutex_);
+}
+
+void SurfaceCache::EndFrame(const FrameMark& mark) {
+  std::unique_lock refining(refine_mutex_, std::defer_lock);
+  if (mark.recorder != nullptr) {
+    refining.lock();
+  } else if (!refining.try_lock()) {
+    return;
+  }
+  ledger_.EndFrame(store_, frame_begin_, EvictionTarget(memory_bytes_), mark);
+  pinned_ = frame_begin_;
+  frame_begin_ = ++clock_;
+}
+
+void SurfaceCache::SetPolicy(std::string_view name) {
+  std::lock_guard refining(refine_mutex_);
+  ledger_.SetPolicy(name);
+}
+
+Evicted SurfaceCache::evicted() const {
+  std::shared_lock lock(mutex_);
+  return store_.evicted();
+}
+
+uint64_t SurfaceCache::LedgerBytes() const {
+  std::lock_guard refining(refine_mutex_);
+  return costs_.ByteSize() + ledger_.ByteSize();
 }
 
 uint64_t SurfaceCache::ByteSize() const {
@@ -243,6 +286,7 @@ uint64_t SurfaceCache::TreeCount() const {
 
 void SurfaceCache::Clear() {
   std::lock_guard refining(refine_mutex_);
+  ledger_.Reset();
   std::unique_lock lock(mutex_);
   store_.Clear();
 }

@@ -6,6 +6,7 @@
 // outside it and takes it to publish.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <limits>
 #include <mutex>
@@ -13,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cache/block_ledger.h"
 #include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
@@ -97,6 +99,14 @@ class SurfaceCache {
   void SetJournal(CellJournal* journal) { journal_ = journal; }
   // Takes kept cells back as far as there is room, of which it returns the number.
   size_t Restore(std::span<KeptSurfaceCell> cells);
+  // Ends a frame, or another request: what it has used is booked where that is needed. May leave
+  // that to the next one's end while somebody else lets the trees grow, unless it is recorded.
+  void EndFrame(const FrameMark& mark);
+  // As BlockLedger::SetPolicy.
+  void SetPolicy(std::string_view name);
+  Evicted evicted() const;
+  // Bytes beside the trees: of what eviction needs to know.
+  uint64_t LedgerBytes() const;
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
@@ -120,18 +130,25 @@ class SurfaceCache {
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop,
                             const Thrift& thrift);
+  // Down to what a pass leaves. Needs refine_mutex_.
+  void Evict();
 
   const LightCertifier certifier_;
   const DiffuseSummer summer_;
   const double min_uses_;
   CellJournal* journal_ = nullptr;
-  std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
+  // Guarded by refine_mutex_:
+  BuildCosts costs_;
+  BlockLedger<SurfaceTree> ledger_;
+  uint32_t frame_begin_ = 1;  // the clock when the last frame ended,
+  uint32_t pinned_ = 1;       // and when it began
   mutable std::shared_mutex mutex_;
   // Guarded by mutex_:
   uint64_t memory_bytes_;
   TreeStore<SurfaceTree> store_;
-  uint32_t clock_ = 1;
   AheadCounts ahead_;
+  std::atomic<uint32_t> clock_ = 1;  // not guarded
 };
 
 }  // namespace linetree

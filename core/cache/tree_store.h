@@ -22,10 +22,21 @@ struct TreeSize {
   uint64_t bytes = 0;
 };
 
+// What has been taken back for want of room.
+struct Evicted {
+  uint64_t cells = 0;  // of which something was known
+  uint64_t bytes = 0;
+};
+
 template <class Tree>
 class TreeStore {
  public:
   using Node = typename Tree::Node;
+  // Who owns this destroys it; that takes a while.
+  struct Removed {
+    std::vector<decltype(Node::children)> children;
+    std::vector<std::unique_ptr<Tree>> trees;
+  };
 
   // What the store holds for every object of the scene, trees or not, counts as well: where
   // `memory_bytes` have no room for it, there are no trees.
@@ -105,11 +116,33 @@ class TreeStore {
       }
       std::stable_sort(victims.begin(), victims.end(),
                        [](const auto& a, const auto& b) { return a.first < b.first; });
+      Removed removed;
       for (const auto& [used, node] : victims) {
         if (byte_size_ <= target) break;
-        DropChildren(*node, used);
+        TakeChildren(*node, removed);
       }
     }
+  }
+  // One block of leaves, which their parent stands for then.
+  void TakeChildren(Node& node, Removed& removed) {
+    uint64_t cells = 0, bytes = sizeof(*node.children);
+    uint32_t used = 0;
+    for (const Node& child : *node.children) {
+      bytes += Node::BytesOf(child.payload.get());
+      cells += child.payload ? 1 : 0;
+      used = std::max(used, child.last_used.load(std::memory_order_relaxed));
+    }
+    node.last_used.store(used, std::memory_order_relaxed);
+    removed.children.push_back(std::move(node.children));
+    CountEvicted(cells, bytes);
+  }
+  // The object must have one.
+  void TakeTree(size_t object, Removed& removed) {
+    Tree& tree = *trees_[object];
+    uint64_t cells = 0;
+    tree.cells().ForEach([&](Node& node) { cells += node.payload ? 1 : 0; });
+    CountEvicted(cells, tree.CountBytes());
+    removed.trees.push_back(std::move(trees_[object]));
   }
 
   // Takes the trees of a former scene's store over, for the objects that are still there and not
@@ -170,6 +203,8 @@ class TreeStore {
   }
 
   uint64_t byte_size() const { return byte_size_; }
+  // Since the store was made.
+  const Evicted& evicted() const { return evicted_; }
   uint64_t cell_count() const { return cells_; }
   uint64_t CountBytes() const {
     uint64_t bytes = IndexBytes();
@@ -235,20 +270,14 @@ class TreeStore {
     std::sort(order.begin(), order.end());
     for (const auto& [used, object] : order) {
       if (byte_size_ <= target) return;
-      Tree& tree = *trees_[object];
-      byte_size_ -= tree.CountBytes();
-      tree.cells().ForEach([&](Node& node) { cells_ -= node.payload ? 1 : 0; });
-      trees_[object].reset();
+      Removed removed;
+      TakeTree(object, removed);
     }
   }
-  void DropChildren(Node& node, uint32_t used) {
-    for (const Node& child : *node.children) {
-      byte_size_ -= Node::BytesOf(child.payload.get());
-      cells_ -= child.payload ? 1 : 0;
-    }
-    byte_size_ -= sizeof(*node.children);
-    node.children.reset();
-    node.last_used.store(used, std::memory_order_relaxed);
+  void CountEvicted(uint64_t cells, uint64_t bytes) {
+    Subtract(cells, bytes);
+    evicted_.cells += cells;
+    evicted_.bytes += bytes;
   }
 
   const Scene& scene_;
@@ -257,6 +286,7 @@ class TreeStore {
   mutable std::vector<std::atomic<bool>> wanted_;  // by object: a reader found no tree
   uint64_t byte_size_ = 0;
   uint64_t cells_ = 0;
+  Evicted evicted_;
 };
 
 // A pass of eviction frees an eighth of the budget.

@@ -57,6 +57,9 @@ class PathTree {
   }
 
   uint64_t CountBytes() const { return sizeof(PathTree) - sizeof(cells_) + cells_.CountBytes(); }
+  uint64_t OwnBytes() const {  // without what cells know and their children
+    return sizeof(PathTree) - sizeof(cells_) + cells_.OwnBytes();
+  }
 
  private:
   double reach_;  // the object's size plus its distance from the origin

@@ -108,6 +108,10 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   stats.set_cache_bytes(host.CacheBytes());
   stats.set_cells(host.cache().CellCount() + host.paths().CellCount());
   stats.set_surface_cells(host.surfaces().CellCount());
+  stats.set_eviction_policy(host.policy());
+  const Evicted evicted = host.evicted();
+  stats.set_cells_evicted(evicted.cells);
+  stats.set_bytes_evicted(evicted.bytes);
   for (const MemoryPart& part : host.Memory()) {
     v1::GetStatsReply::MemoryPart* out = stats.add_memory();
     out->set_name(std::string(part.name));

@@ -41,6 +41,10 @@ class Arc : public EvictionPolicy {
     const uint64_t rest = once_.bytes() + once_ghosts_.bytes() + often_.bytes();
     often_ghosts_.Shrink(2 * budget > rest ? 2 * budget - rest : 0);
   }
+  void Change(const PolicyItem& item) override {
+    const ItemSlot slot = items_.At(item.id);
+    QueueOf(slot).Change(slot, item);
+  }
   void Access(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
     QueueOf(slot).Take(slot);
@@ -62,6 +66,7 @@ class Arc : public EvictionPolicy {
     const bool takes_once = !once_.IsEmpty() && (from_once || often_.IsEmpty());
     return items_[(takes_once ? once_ : often_).oldest()].item.id;
   }
+  uint64_t ByteSize() const override { return items_.ByteSize(); }
 
  private:
   ItemQueue& QueueOf(ItemSlot slot) { return once_.Holds(slot) ? once_ : often_; }

@@ -32,6 +32,8 @@ class EvictionPolicy {
   virtual void Expect(const PolicyItem& /*item*/) {}
   // An item has come that was not held.
   virtual void Insert(const PolicyItem& item) = 0;
+  // A held item has other bytes or costs than before.
+  virtual void Change(const PolicyItem& item) = 0;
   // A held item has been used.
   virtual void Access(uint64_t id) = 0;
   // A held item has gone, though not by the policy's choice: nothing is remembered of it.
@@ -51,6 +53,9 @@ class EvictionPolicy {
   // viewpoints are heading; it says so anew when the item has been used or the guess is no longer
   // good. Infinity: not at all.
   virtual void ExpectUse(uint64_t /*id*/, double /*frames*/) {}
+
+  // Of what the policy remembers, beside itself.
+  virtual uint64_t ByteSize() const = 0;
 
  protected:
   EvictionPolicy() = default;

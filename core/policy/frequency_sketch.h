@@ -37,6 +37,7 @@ class FrequencySketch {
     }
     return least;
   }
+  uint64_t ByteSize() const { return rows_.size() * width_; }
 
  private:
   size_t Place(uint64_t id, size_t row) const {

@@ -10,6 +10,7 @@ namespace {
 class Gdsf : public EvictionPolicy {
  public:
   void Insert(const PolicyItem& item) override { Use(items_.Add(item)); }
+  void Change(const PolicyItem& item) override { items_[items_.At(item.id)].item = item; }
   void Access(uint64_t id) override { Use(items_.At(id)); }
   void Remove(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
@@ -21,6 +22,7 @@ class Gdsf : public EvictionPolicy {
     Remove(id);
   }
   uint64_t PickVictim() override { return items_[heap_.first()].item.id; }
+  uint64_t ByteSize() const override { return items_.ByteSize() + heap_.ByteSize(); }
 
  private:
   void Use(ItemSlot slot) {

@@ -52,6 +52,10 @@ class ItemTable {
   Entry& operator[](ItemSlot slot) { return entries_[slot]; }
   const Entry& operator[](ItemSlot slot) const { return entries_[slot]; }
   size_t size() const { return slots_.size(); }
+  uint64_t ByteSize() const {
+    return entries_.capacity() * sizeof(Entry) + free_.capacity() * sizeof(ItemSlot) +
+           slots_.capacity() * (sizeof(std::pair<uint64_t, ItemSlot>) + 1);
+  }
   // visit(ItemSlot), for those that are in a queue.
   template <class Fn>
   void ForEach(Fn&& visit) const {
@@ -93,6 +97,10 @@ class ItemQueue {
   void MakeNewest(ItemSlot slot) {
     Take(slot);
     Push(slot);
+  }
+  void Change(ItemSlot slot, const PolicyItem& item) {
+    bytes_ += item.bytes - table_[slot].item.bytes;
+    table_[slot].item = item;
   }
   // Forgets the oldest items until at most so many bytes are left.
   void Shrink(uint64_t bytes) {

@@ -4,6 +4,8 @@
 // are remembered so that the ones that were missed count as well. What the owner expects of an item
 // (ExpectUse) stands in the place of that.
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -31,16 +33,21 @@ class Reuse : public EvictionPolicy {
       Use(ghost);
       ghosts_.Take(ghost);
       items_[ghost].item = item;
-      return held_.Push(ghost);
+      held_.Push(ghost);
+      return Offer(ghost);
     }
     const ItemSlot slot = items_.Add(item);
     if (slot >= pasts_.size()) pasts_.resize(slot + size_t{1});
     pasts_[slot] = {.used = now_};
     held_.Push(slot);
+    Offer(slot);
   }
+  void Change(const PolicyItem& item) override { held_.Change(items_.At(item.id), item); }
   void Access(uint64_t id) override {
     ++calls_;
-    Use(items_.At(id));
+    const ItemSlot slot = items_.At(id);
+    Use(slot);
+    Offer(slot);
   }
   void Remove(uint64_t id) override { held_.Forget(items_.At(id)); }
   void Evict(uint64_t id) override {
@@ -52,18 +59,20 @@ class Reuse : public EvictionPolicy {
   void Spare(uint64_t id) override { pasts_[items_.At(id)].spared = now_; }
   uint64_t PickVictim() override {
     const bool is_old = batch_frame_ != now_ && calls_ * kBatchShare > items_.size();
-    if (is_old) ChooseBatch();
-    for (int tries = 0; tries < 2; ++tries) {
-      for (; next_ < batch_.size(); ++next_) {
-        if (IsGood(batch_[next_])) return batch_[next_].id;
-      }
+    if (is_old || !SkipToGood()) {
       ChooseBatch();
+      if (!SkipToGood()) return items_[held_.oldest()].item.id;  // all are spared
     }
-    return items_[held_.oldest()].item.id;
+    const bool takes_recent = !recent_.empty() && recent_.top().worth < batch_[next_].worth;
+    return takes_recent ? recent_.top().id : batch_[next_].id;
   }
   void NextFrame() override { ++now_; }
   void ExpectUse(uint64_t id, double frames) override {
     pasts_[items_.At(id)].expected = static_cast<float>(now_ + frames);
+  }
+  uint64_t ByteSize() const override {
+    return items_.ByteSize() + pasts_.capacity() * sizeof(Past) +
+           batch_.capacity() * sizeof(Candidate) + times_.ByteSize();
   }
 
  private:
@@ -79,6 +88,7 @@ class Reuse : public EvictionPolicy {
     uint32_t used;
     double worth;
     bool operator<(const Candidate& o) const { return worth < o.worth; }
+    bool operator>(const Candidate& o) const { return worth > o.worth; }
   };
 
   static size_t ClassOf(const Past& past) {
@@ -100,11 +110,10 @@ class Reuse : public EvictionPolicy {
   double Worth(ItemSlot slot) const {
     const Past& past = pasts_[slot];
     const PolicyItem& item = items_[slot].item;
-    // An item of this frame waits for the next one.
     const double uses =
         past.expected >= 0
             ? 1.0 / std::max(1.0, static_cast<double>(past.expected) - static_cast<double>(now_))
-            : times_.UsesPerFrame(ClassOf(past), now_ - past.used + 1);
+            : times_.UsesPerFrame(ClassOf(past), now_ - past.used);
     return uses * item.rebuild_ns / static_cast<double>(item.bytes);
   }
   bool IsGood(const Candidate& candidate) const {
@@ -112,23 +121,35 @@ class Reuse : public EvictionPolicy {
     return slot == candidate.slot && held_.Holds(slot) && pasts_[slot].used == candidate.used &&
            !IsSpared(slot);
   }
+  // Past candidates that have changed since they became some; false when the batch is used up.
+  bool SkipToGood() {
+    while (next_ < batch_.size() && !IsGood(batch_[next_])) ++next_;
+    while (!recent_.empty() && !IsGood(recent_.top())) recent_.pop();
+    return next_ < batch_.size();
+  }
+  // What has just been used may be worth less than what is in the batch.
+  void Offer(ItemSlot slot) { recent_.push(CandidateOf(slot)); }
+  Candidate CandidateOf(ItemSlot slot) const {
+    return {items_[slot].item.id, slot, pasts_[slot].used, Worth(slot)};
+  }
   bool IsSpared(ItemSlot slot) const { return pasts_[slot].spared == now_; }
 
   void ChooseBatch() {
     times_.Begin(items_.size());
     items_.ForEach(
-        [&](ItemSlot slot) { times_.Open(ClassOf(pasts_[slot]), now_ - pasts_[slot].used + 1); });
+        [&](ItemSlot slot) { times_.Open(ClassOf(pasts_[slot]), now_ - pasts_[slot].used); });
     times_.Learn();
     batch_.clear();
     items_.ForEach([&](ItemSlot slot) {
       if (!held_.Holds(slot) || IsSpared(slot)) return;
-      batch_.push_back({items_[slot].item.id, slot, pasts_[slot].used, Worth(slot)});
+      batch_.push_back(CandidateOf(slot));
     });
     const size_t wanted = std::min(batch_.size(), batch_.size() / kBatchShare + kLeastBatch);
     const auto end = batch_.begin() + static_cast<std::ptrdiff_t>(wanted);
     std::partial_sort(batch_.begin(), end, batch_.end());
     batch_.erase(end, batch_.end());
     next_ = 0;
+    recent_ = {};
     batch_frame_ = now_;
     calls_ = 0;
   }
@@ -140,6 +161,7 @@ class Reuse : public EvictionPolicy {
   uint32_t now_ = 1;
   std::vector<Candidate> batch_;  // those to go first, from next_ on
   size_t next_ = 0;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> recent_;  // used since
   uint32_t batch_frame_ = 0;
   size_t calls_ = 0;  // since the batch was chosen
 };

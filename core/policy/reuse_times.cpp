@@ -8,19 +8,18 @@ uint32_t ReuseTimes::FirstAge(size_t bin) {
   return static_cast<uint32_t>((4 + (bin - kExactAges) % 4) << (octave - 2));
 }
 
-// hazard: the chance that a spell ends within a bin that it has reached.
-void ReuseTimes::LearnClass(const Bins& hazard, Bins& worth) {
-  for (size_t from = 0; from < kAges; ++from) {
-    double alive = 1, time = 0, best = 0;
-    for (size_t bin = from; bin < kAges; ++bin) {
-      const double width = FirstAge(bin + 1) - FirstAge(bin);
-      // Who ends within a bin does so in its middle.
-      time += alive * width * (1 - hazard[bin] / 2);
-      alive *= 1 - hazard[bin];
-      best = std::max(best, (1 - alive) / time);
-    }
-    worth[from] = best;
+// hazard: the chance that a spell ends within a bin that it has reached; `wait`: frames until it
+// enters the first one.
+double ReuseTimes::Index(const Bins& hazard, size_t from, double wait) {
+  double alive = 1, time = wait, best = 0;
+  for (size_t bin = from; bin < kAges; ++bin) {
+    const double width = FirstAge(bin + 1) - FirstAge(bin);
+    // Who ends within a bin does so in its middle.
+    time += alive * width * (1 - hazard[bin] / 2);
+    alive *= 1 - hazard[bin];
+    best = std::max(best, (1 - alive) / time);
   }
+  return best;
 }
 
 void ReuseTimes::Learn() {
@@ -49,7 +48,8 @@ void ReuseTimes::Learn() {
       hazard[bin] =
           std::min(1.0, (ended_[kind][bin] + kLeanOn * usual) / (reached[kind][bin] + kLeanOn));
     }
-    LearnClass(hazard, worth_[kind]);
+    for (size_t bin = 0; bin < kAges; ++bin) worth_[kind][bin] = Index(hazard, bin, 0);
+    fresh_[kind] = Index(hazard, 0, 0.5);
   }
 }
 

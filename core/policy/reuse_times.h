@@ -26,7 +26,8 @@ class ReuseTimes {
     return std::min(bin, kAges - 1);
   }
 
-  explicit ReuseTimes(size_t classes) : ended_(classes), open_(classes), worth_(classes) {}
+  explicit ReuseTimes(size_t classes)
+      : ended_(classes), open_(classes), worth_(classes), fresh_(classes) {}
 
   void Ended(size_t kind, uint32_t gap) {
     ended_[kind][BinOf(gap)] += 1;
@@ -46,8 +47,13 @@ class ReuseTimes {
   void Learn();
 
   // The most uses in a frame that an item of this class and age promises, over the time that makes
-  // the best of it: the index of Gittins (1979), by which keeping the best is optimal.
-  double UsesPerFrame(size_t kind, uint32_t age) const { return worth_[kind][BinOf(age)]; }
+  // the best of it: the index of Gittins (1979), by which keeping the best is optimal. At an age of
+  // 0 it has been used in this frame and cannot be before the next; at 1 it may still be in this
+  // one.
+  double UsesPerFrame(size_t kind, uint32_t age) const {
+    return age == 0 ? fresh_[kind] : worth_[kind][BinOf(age)];
+  }
+  uint64_t ByteSize() const { return 3 * ended_.capacity() * sizeof(Bins); }
   // Nine of ten spells that ended were not longer.
   uint32_t usual_gap() const { return usual_gap_; }
 
@@ -57,9 +63,10 @@ class ReuseTimes {
   static constexpr double kLeanOn = 30;  // spells of all classes that a class counts beside its own
 
   static uint32_t FirstAge(size_t bin);
-  static void LearnClass(const Bins& hazard, Bins& worth);
+  static double Index(const Bins& hazard, size_t from, double wait);
 
   std::vector<Bins> ended_, open_, worth_;
+  std::vector<double> fresh_;  // at age 0
   double ended_count_ = 0;
   uint32_t usual_gap_ = 1;
 };

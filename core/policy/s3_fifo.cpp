@@ -22,6 +22,10 @@ class S3Fifo : public EvictionPolicy {
     if (ghost != kNoItem) ghosts_.Forget(ghost);
     (ghost == kNoItem ? small_ : main_).Push(items_.Add(item));
   }
+  void Change(const PolicyItem& item) override {
+    const ItemSlot slot = items_.At(item.id);
+    (small_.Holds(slot) ? small_ : main_).Change(slot, item);
+  }
   void Access(uint64_t id) override {
     uint32_t& uses = items_[items_.At(id)].mark;
     uses = std::min(uses + 1, kMaxUses);
@@ -48,6 +52,7 @@ class S3Fifo : public EvictionPolicy {
     }
     return VictimOfMain();
   }
+  uint64_t ByteSize() const override { return items_.ByteSize(); }
 
  private:
   uint64_t VictimOfMain() {

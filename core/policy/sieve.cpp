@@ -11,6 +11,7 @@ namespace {
 class Sieve : public EvictionPolicy {
  public:
   void Insert(const PolicyItem& item) override { queue_.Push(items_.Add(item)); }
+  void Change(const PolicyItem& item) override { queue_.Change(items_.At(item.id), item); }
   void Access(uint64_t id) override { items_[items_.At(id)].mark = 1; }
   void Remove(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
@@ -27,6 +28,7 @@ class Sieve : public EvictionPolicy {
     }
     return items_[hand_].item.id;
   }
+  uint64_t ByteSize() const override { return items_.ByteSize(); }
 
  private:
   ItemTable items_;

@@ -17,6 +17,7 @@ class Belady : public EvictionPolicy {
   explicit Belady(const int64_t& next) : next_(next) {}
 
   void Insert(const PolicyItem& item) override { Use(items_.Add(item)); }
+  void Change(const PolicyItem& item) override { items_[items_.At(item.id)].item = item; }
   void Access(uint64_t id) override { Use(items_.At(id)); }
   void Remove(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
@@ -25,6 +26,7 @@ class Belady : public EvictionPolicy {
   }
   void Evict(uint64_t id) override { Remove(id); }
   uint64_t PickVictim() override { return items_[heap_.first()].item.id; }
+  uint64_t ByteSize() const override { return items_.ByteSize() + heap_.ByteSize(); }
 
  private:
   void Use(ItemSlot slot) {

@@ -17,6 +17,9 @@ class TwoQueue : public EvictionPolicy {
     if (out != kNoItem) out_.Forget(out);
     (out == kNoItem ? in_ : main_).Push(items_.Add(item));
   }
+  void Change(const PolicyItem& item) override {
+    QueueOf(item.id).Change(items_.At(item.id), item);
+  }
   void Access(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
     if (main_.Holds(slot)) main_.MakeNewest(slot);
@@ -34,6 +37,7 @@ class TwoQueue : public EvictionPolicy {
     const bool from_in = in_.bytes() > ShareOfBudget(kInShare) || main_.IsEmpty();
     return items_[(from_in ? in_ : main_).oldest()].item.id;
   }
+  uint64_t ByteSize() const override { return items_.ByteSize(); }
 
  private:
   ItemQueue& QueueOf(uint64_t id) { return main_.Holds(items_.At(id)) ? main_ : in_; }

@@ -34,6 +34,9 @@ class VictimHeap {
     place_[last.slot] = at;
     Settle(at);
   }
+  uint64_t ByteSize() const {
+    return heap_.capacity() * sizeof(Place) + place_.capacity() * sizeof(size_t);
+  }
 
  private:
   struct Place {

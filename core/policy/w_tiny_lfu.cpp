@@ -29,6 +29,10 @@ class WTinyLfu : public EvictionPolicy {
     sketch_.MakeRoom(items_.size());
     See(slot);
   }
+  void Change(const PolicyItem& item) override {
+    const ItemSlot slot = items_.At(item.id);
+    QueueOf(slot).Change(slot, item);
+  }
   void Access(uint64_t id) override {
     const ItemSlot slot = items_.At(id);
     See(slot);
@@ -65,6 +69,7 @@ class WTinyLfu : public EvictionPolicy {
     return items_[victim == kNoItem ? window_.oldest() : victim].item.id;
   }
   void NextFrame() override { last_frame_bytes_ = std::exchange(frame_bytes_, 0); }
+  uint64_t ByteSize() const override { return items_.ByteSize() + sketch_.ByteSize(); }
 
  private:
   ItemQueue& QueueOf(ItemSlot slot) {

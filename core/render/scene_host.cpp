@@ -134,7 +134,11 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
       cache_(tracer_, RadianceShare(cache_options)),
       surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
-      plan_(scene_->objects.size(), cache_options.always_ask) {}
+      plan_(scene_->objects.size(), cache_options.always_ask),
+      policy_(cache_options.policy) {
+  surfaces_.SetPolicy(policy_);
+  paths_.SetPolicy(policy_);
+}
 
 void SceneHost::Keep(std::shared_ptr<CellJournal> journal) {
   journal_ = std::move(journal);
@@ -147,6 +151,7 @@ Adopted SceneHost::Adopt(SceneHost& former) {
   const ChangeReach reach(scene(), change);
   former.cache_.SetMemoryBytes(0);
   plan_.Inherit(former.plan_, change.now);
+  SetPolicy(former.policy()).IgnoreError();  // it was good for the former one
   Adopted all = surfaces_.Adopt(former.surfaces_, reach);
   const Adopted paths = paths_.Adopt(former.paths_, reach);
   all.kept += paths.kept;
@@ -159,6 +164,38 @@ void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
   cache_.SetMemoryBytes(shares.radiance);
   surfaces_.SetMemoryBytes(shares.surfaces);
   paths_.SetMemoryBytes(shares.paths);
+}
+
+absl::Status SceneHost::SetPolicy(const std::string& name) {
+  if (!name.empty()) {
+    if (const auto made = MakePolicy(name, 0); !made.ok()) return made.status();
+  }
+  const std::lock_guard lock(policy_mutex_);
+  if (name == policy_) return absl::OkStatus();
+  policy_ = name;
+  surfaces_.SetPolicy(name);
+  paths_.SetPolicy(name);
+  return absl::OkStatus();
+}
+
+std::string SceneHost::policy() const {
+  const std::lock_guard lock(policy_mutex_);
+  return policy_;
+}
+
+Evicted SceneHost::evicted() const {
+  const Evicted surfaces = surfaces_.evicted(), paths = paths_.evicted();
+  return {surfaces.cells + paths.cells, surfaces.bytes + paths.bytes};
+}
+
+void SceneHost::EndFrame(const RenderOptions& options) {
+  if (options.mode != Mode::kCached || options.judge != JudgeKind::kCertified) return;
+  FrameMark mark;
+  if (recorder_ != nullptr && !options.ahead) {
+    mark = {recorder_, recorder_->BeginFrame(), HashOfText(scene_->version)};
+  }
+  surfaces_.EndFrame(mark);
+  paths_.EndFrame(mark);
 }
 
 const PacketTracer& SceneHost::packets() const {
@@ -174,6 +211,7 @@ std::vector<MemoryPart> SceneHost::Memory() const {
           {"linetrees", paths_.ByteSize(), paths_.CellCount(), true},
           {"surface trees", surfaces_.ByteSize(), surfaces_.CellCount(), true},
           {"planner", plan_.ByteSize()},
+          {"eviction", surfaces_.LedgerBytes() + paths_.LedgerBytes()},
           {"packets", packet_bytes_}};
 }
 
@@ -252,6 +290,7 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
                            progress, frame);
   }
   if (!status.ok()) return status;
+  EndFrame(request.options);
   frame.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   if (request.options.ahead) {
@@ -287,6 +326,7 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
                         nullptr, batch.answers, batch.stats);
   }
   if (!status.ok()) return status;
+  EndFrame(options);
   batch.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   ++totals_.ray_batches;

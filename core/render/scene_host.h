@@ -92,6 +92,16 @@ class SceneHost {
   // CacheBytes), and what they and packets need beside it.
   std::vector<MemoryPart> Memory() const;
 
+  // The policy by which surface trees and certified linetrees evict, of AllPolicies, or
+  // INVALID_ARGUMENT. What is known of their use is forgotten.
+  absl::Status SetPolicy(const std::string& name);
+  std::string policy() const;
+  // Of surface trees and certified linetrees, since the scene was loaded.
+  Evicted evicted() const;
+  // Records what frames and batches of rays use from now on. Before anybody asks; the recorder must
+  // outlive the host.
+  void RecordTo(TraceRecorder* recorder) { recorder_ = recorder; }
+
   // What frames by packets do about the scene at this epsilon, and the planner about its objects.
   struct Explanation {
     std::vector<FeatureNote> features;
@@ -114,6 +124,8 @@ class SceneHost {
   AheadTotals ahead() const;
 
  private:
+  // After a frame or a batch of rays that has asked the trees.
+  void EndFrame(const RenderOptions& options);
   // By packets, or ray by ray.
   bool GoesByPackets(const RenderOptions& options) const;
   absl::Status RenderRays(const FrameRequest& request, WorkerPool& pool, const CancelToken* cancel,
@@ -132,6 +144,9 @@ class SceneHost {
   SurfaceCache surfaces_;
   PathCache paths_;
   FramePlan plan_;
+  TraceRecorder* recorder_ = nullptr;
+  mutable std::mutex policy_mutex_;
+  std::string policy_;  // guarded by policy_mutex_
   mutable std::mutex totals_mutex_;
   HostTotals totals_;  // guarded by totals_mutex_, as is ahead_frames_
   uint64_t ahead_frames_ = 0;

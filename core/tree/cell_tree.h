@@ -93,6 +93,12 @@ class CellTree {
     for (Node& root : roots_) Visit(root, visit);
   }
 
+  // visit(Node&) for the largest cells.
+  template <class Fn>
+  void ForEachRoot(Fn&& visit) {
+    for (Node& root : roots_) visit(root);
+  }
+
   // What was taken out of a tree.
   struct Pruned {
     uint64_t cells = 0;  // of which something was known
@@ -108,9 +114,11 @@ class CellTree {
     return pruned;
   }
 
+  // Without what the cells know and their children.
+  uint64_t OwnBytes() const { return sizeof(CellTree) + roots_.capacity() * sizeof(Node); }
   // Recomputed from scratch.
   uint64_t CountBytes() const {
-    uint64_t bytes = sizeof(CellTree) + roots_.capacity() * sizeof(Node);
+    uint64_t bytes = OwnBytes();
     for (const Node& root : roots_) bytes += BytesOf(root);
     return bytes;
   }

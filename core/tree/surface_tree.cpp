@@ -60,9 +60,13 @@ std::optional<size_t> SurfaceTree::SideOf(const Hit& hit) const {
   return 0;
 }
 
-uint64_t SurfaceTree::CountBytes() const {
+uint64_t SurfaceTree::OwnBytes() const {
   return sizeof(SurfaceTree) - sizeof(cells_) + chart_.HeapBytes() +
-         forms_.capacity() * sizeof(SurfaceChart::FaceForm) + cells_.CountBytes();
+         forms_.capacity() * sizeof(SurfaceChart::FaceForm) + cells_.OwnBytes();
+}
+
+uint64_t SurfaceTree::CountBytes() const {
+  return OwnBytes() - cells_.OwnBytes() + cells_.CountBytes();
 }
 
 }  // namespace linetree

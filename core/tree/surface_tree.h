@@ -39,6 +39,7 @@ class SurfaceTree {
   KnownLights Find(const Hit& hit, double epsilon, uint32_t now, uint32_t points = 1) const;
 
   uint64_t CountBytes() const;
+  uint64_t OwnBytes() const;  // without what cells know and their children
 
  private:
   // (s, t): the hit's coordinates in the cell.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "tests/support/demo_scenes.h"
@@ -256,6 +258,87 @@ TEST_F(SurfaceCacheTest, WithoutAPriceOrALimitThereIsNoBudget) {
     }
   }
   EXPECT_GT(plain.CellCount(), 100u) << "divisions among them";
+}
+
+std::vector<std::string> PoliciesAndNone() {
+  std::vector<std::string> names = {""};
+  for (const PolicyNote& note : AllPolicies()) names.emplace_back(note.name);
+  return names;
+}
+
+TEST_F(SurfaceCacheTest, EveryPolicyKeepsTheBudgetAndCountsWhatGoes) {
+  for (const std::string& policy : PoliciesAndNone()) {
+    constexpr uint64_t kBudget = 150'000;
+    SurfaceCache cache(tracer_, kBudget);
+    cache.SetPolicy(policy);
+    uint64_t certified = 0;
+    for (uint64_t round = 0; round < 24; ++round) {
+      Use(cache, round % 7, 300);
+      certified += cache.Refine(50, kSerial);
+      ASSERT_LE(cache.ByteSize(), kBudget) << policy;
+      if (round % 3 != 2) cache.EndFrame({});
+      if (round == 15) cache.SetPolicy("lru");
+      if (round == 18) cache.SetMemoryBytes(kBudget / 2);
+      if (round == 21) cache.SetMemoryBytes(kBudget);
+      ASSERT_EQ(cache.ByteSize(), cache.CountBytes()) << policy;
+      ASSERT_EQ(cache.CellCount() + cache.evicted().cells, certified) << policy;
+    }
+    EXPECT_GT(cache.evicted().cells, 100u) << policy;
+    EXPECT_GT(cache.evicted().bytes, 50 * cache.evicted().cells) << policy;
+    cache.Clear();
+    EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  }
+}
+
+// Of two views of which only one fits, the one of the last frame is still known.
+TEST_F(SurfaceCacheTest, WhatTheLastFrameUsedStays) {
+  const auto learn = [&](SurfaceCache& cache, uint64_t seed) {
+    for (int round = 0; round < 6; ++round) {
+      Use(cache, seed, 200);
+      cache.Refine(60, kSerial);
+    }
+    const int known = Use(cache, seed, 200);
+    cache.EndFrame({});
+    return known;
+  };
+  for (const std::string& policy : PoliciesAndNone()) {
+    SurfaceCache cache(tracer_, 10'000'000);
+    cache.SetPolicy(policy);
+    for (uint64_t seed = 2; seed < 6; ++seed) learn(cache, seed);
+    const int known = learn(cache, 1);
+    const uint64_t all = cache.ByteSize();
+    cache.SetMemoryBytes(all - all / 8);  // a quarter has to go
+    EXPECT_LT(cache.ByteSize(), all * 4 / 5) << policy;
+    EXPECT_EQ(Use(cache, 1, 200), known) << policy;
+  }
+}
+
+TEST_F(SurfaceCacheTest, RecordsWhatFramesUse) {
+  SurfaceCache cache(tracer_, 10'000'000);
+  TraceRecorder recorder;
+  const auto end_frame = [&] { cache.EndFrame({&recorder, recorder.BeginFrame(), 0}); };
+  for (uint64_t round = 0; round < 4; ++round) {
+    Use(cache, 1, 500);
+    cache.Refine(100, kSerial);
+    end_frame();
+  }
+  const uint64_t busy = recorder.event_count();
+  EXPECT_GT(busy, 100u);
+  end_frame();
+  EXPECT_EQ(recorder.event_count(), busy) << "a frame that asks for nothing";
+  Use(cache, 1, 500);
+  end_frame();
+  const Trace trace = recorder.Take();
+  std::set<std::pair<uint32_t, uint64_t>> uses;
+  for (const TraceEvent& event : trace) {
+    EXPECT_TRUE(uses.emplace(event.time, event.id).second) << "once a frame";
+    EXPECT_GT(event.bytes, 0u);
+  }
+  const WorkingSet set = WorkingSetOf(trace);
+  EXPECT_EQ(set.frames, 4u) << "but for the first, which found no trees, and the idle one";
+  EXPECT_LE(set.bytes, cache.ByteSize());
+  EXPECT_GT(set.bytes, cache.ByteSize() / 2);
+  EXPECT_GT(set.rebuild_ns, 100 * static_cast<double>(cache.CellCount()));
 }
 
 }  // namespace

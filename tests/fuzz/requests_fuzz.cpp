@@ -65,6 +65,9 @@ void Handle(const v1::GetStatsRequest& request) { Check(TheBackend().GetStats(re
 void Handle(const v1::UpdateSceneRequest& request) {
   if (request.scene() != "ball") Check(TheBackend().UpdateScene(request, CancelToken()).status());
 }
+void Handle(const v1::TuneCacheRequest& request) {
+  Check(TheBackend().TuneCache(request).status());
+}
 void Handle(const v1::GetLimitsRequest&) { TheBackend().GetLimits(); }
 
 // Reads a request in one of the two forms and hands it over. What stood before the first error is a
@@ -89,11 +92,11 @@ void Feed(bool is_text, const std::string& input) {
 }
 
 using Feeder = void (*)(bool is_text, const std::string& input);
-constexpr Feeder kFeeders[] = {Feed<v1::LoadSceneRequest>,     Feed<v1::ListScenesRequest>,
-                               Feed<v1::DescribeSceneRequest>, Feed<v1::UnloadSceneRequest>,
-                               Feed<v1::RenderFrameRequest>,   Feed<v1::FlyRequest>,
-                               Feed<v1::TraceRaysRequest>,     Feed<v1::GetStatsRequest>,
-                               Feed<v1::GetLimitsRequest>,     Feed<v1::UpdateSceneRequest>};
+constexpr Feeder kFeeders[] = {
+    Feed<v1::LoadSceneRequest>,   Feed<v1::ListScenesRequest>,  Feed<v1::DescribeSceneRequest>,
+    Feed<v1::UnloadSceneRequest>, Feed<v1::RenderFrameRequest>, Feed<v1::FlyRequest>,
+    Feed<v1::TraceRaysRequest>,   Feed<v1::GetStatsRequest>,    Feed<v1::GetLimitsRequest>,
+    Feed<v1::UpdateSceneRequest>, Feed<v1::TuneCacheRequest>};
 
 void LoadBallOnce() {
   static const bool loaded = [] {
@@ -132,6 +135,7 @@ const std::pair<char, const char*> kTexts[] = {
     {'7', R"(scene: "ball")"},
     {'8', ""},
     {'9', R"(scene: "d")"},
+    {':', R"(scene: "ball" policy: "lru")"},
 };
 
 }  // namespace
@@ -156,7 +160,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   LoadBallOnce();
   if (size == 0) return 0;
   const std::string input(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const bool is_text = data[0] >= '0' && data[0] <= '9';
+  const bool is_text = data[0] >= '0' && data[0] <= ':';
   const size_t type = static_cast<size_t>(is_text ? data[0] - '0' : data[0] % 32 - 1);
   if (type < std::size(kFeeders)) kFeeders[type](is_text, input);
   return 0;

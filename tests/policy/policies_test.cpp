@@ -49,6 +49,9 @@ TEST_P(EveryPolicy, PicksWhatIsHeldWhateverHappens) {
       policy->ExpectUse(held.rbegin()->first, random.Below(10));
     } else if (what == 3) {
       policy->SetBudget(static_cast<uint64_t>(100 + random.Below(200)));
+    } else if (what == 4 && held.contains(id)) {
+      held[id].bytes = static_cast<uint64_t>(1 + random.Below(9));
+      policy->Change(held[id]);
     } else if (held.contains(id)) {
       policy->Access(id);
     } else {

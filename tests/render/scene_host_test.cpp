@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 
 #include "tests/support/demo_scenes.h"
 
@@ -184,6 +185,44 @@ TEST_F(SceneHostTest, AnEmptySceneIsAllBackground) {
   ASSERT_TRUE(frame.ok());
   EXPECT_EQ(frame->stats.background, frame->stats.pixels);
   EXPECT_EQ(frame->radiance[1], 0.5f);
+}
+
+// Three sessions whose cells find no room, while the policy changes.
+TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
+  const auto scene = test::BallsOnFloor(8, 70);
+  SceneHost host(scene, {.memory_bytes = 1'000'000});
+  WorkerPool pool(2);
+  const auto render = [&](int view, Mode mode) {
+    FrameRequest request;
+    request.camera = scene->cameras[0];
+    request.camera.eye.x += view;
+    request.width = request.height = 96;
+    request.options.mode = mode;
+    request.options.max_relative_error = 0;
+    auto frame = host.RenderFrame(request, pool);
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return frame.ok() ? frame->radiance : std::vector<float>();
+  };
+  std::vector<std::thread> sessions;
+  for (int view = 0; view < 3; ++view) {
+    sessions.emplace_back([&, view] {
+      const std::vector<float> classical = render(view, Mode::kClassical);
+      for (int i = 0; i < 8; ++i) EXPECT_EQ(render(view, Mode::kCached), classical) << view;
+    });
+  }
+  for (const PolicyNote& note : AllPolicies()) {
+    EXPECT_TRUE(host.SetPolicy(std::string(note.name)).ok());
+    EXPECT_LE(host.CacheBytes(), 1'000'000u);
+    render(4, Mode::kCached);
+  }
+  for (std::thread& session : sessions) session.join();
+  EXPECT_GT(host.surfaces().evicted().cells, 0u);
+  EXPECT_GT(host.paths().evicted().cells, 0u);
+  EXPECT_EQ(host.evicted().cells, host.surfaces().evicted().cells + host.paths().evicted().cells);
+  EXPECT_EQ(host.surfaces().CountBytes(), host.surfaces().ByteSize());
+  EXPECT_EQ(host.paths().CountBytes(), host.paths().ByteSize());
+  EXPECT_FALSE(host.SetPolicy("mru").ok());
+  EXPECT_EQ(host.policy(), AllPolicies().back().name);
 }
 
 }  // namespace

@@ -62,7 +62,8 @@ TEST_F(GateTest, EveryMethodAsksForATokenAndKnowsItsRole) {
     EXPECT_NE(admins.error_code(), StatusCode::PERMISSION_DENIED) << method;
     EXPECT_NE(admins.error_code(), StatusCode::UNIMPLEMENTED) << method;
   }
-  EXPECT_THAT(for_admins, UnorderedElementsAre("LoadScene", "UnloadScene", "UpdateScene"));
+  EXPECT_THAT(for_admins,
+              UnorderedElementsAre("LoadScene", "UnloadScene", "UpdateScene", "TuneCache"));
 }
 
 TEST_F(GateTest, StreamsAreRefusedToo) {

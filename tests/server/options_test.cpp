@@ -45,6 +45,8 @@ TEST_P(BadOptions, AreRefusedByTheNameOfTheirFlag) {
 using Options = ServerOptions;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const BadOption kBadOptions[] = {
+    {"--policy", [](Options& o) { o.policy = "mru"; }},
+    {"--record-trace", [](Options& o) { o.record_trace = "/nowhere/at/all/a.trace"; }},
     {"--audit", [](Options& o) { o.audit_share = -1e-9; }},
     {"--audit", [](Options& o) { o.audit_share = 1.5; }},
     {"--audit", [](Options& o) { o.audit_share = kNan; }},

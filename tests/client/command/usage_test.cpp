@@ -68,10 +68,13 @@ TEST(Usage, WhatBelongsToALocalCacheNeedsLocal) {
 }
 
 TEST(Usage, EveryCommandExplainsItselfWithExamples) {
-  const std::vector<std::vector<std::string>> commands = {
-      {"render"},           {"fly"},         {"rays"}, {"stats"},          {"scene", "check"},
-      {"scene", "convert"}, {"compare"},     {"load"}, {"bench", "error"}, {"bench", "audit"},
-      {"bench", "peers"},   {"cache", "sim"}};
+  const std::vector<std::vector<std::string>> commands = {{"render"},         {"fly"},
+                                                          {"rays"},           {"stats"},
+                                                          {"scene", "check"}, {"scene", "convert"},
+                                                          {"compare"},        {"load"},
+                                                          {"bench", "error"}, {"bench", "audit"},
+                                                          {"bench", "peers"}, {"cache", "sim"},
+                                                          {"cache", "policy"}};
   for (std::vector<std::string> command : commands) {
     std::string name = "linetree";
     for (const std::string& word : command) name += " " + word;

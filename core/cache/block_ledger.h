@@ -1,0 +1,243 @@
+// Books which blocks of a store are used, frame by frame, and evicts those that a policy picks.
+//
+// A block is the children of one cell, or the roots of one tree. Blocks go leaf-first: one goes
+// when nothing below it is left. What is used by frames under way or was by the last one stays, as
+// far as the budget permits. A ledger starts when its store is nearly full, and is empty before.
+//
+// Thread safety: as the store's, but for readers: its owner lets nobody else change the store
+// meanwhile. What readers may see is changed under the lock that Evict is given.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
+#include "core/cache/block_id.h"
+#include "core/cache/build_costs.h"
+#include "core/cache/tree_store.h"
+#include "core/policy/policies.h"
+#include "core/policy/trace_recorder.h"
+
+namespace linetree {
+
+// A frame that has ended, for those who record it.
+struct FrameMark {
+  TraceRecorder* recorder = nullptr;  // null: nobody
+  uint32_t frame = 0;
+  uint64_t salt = 0;  // tells the blocks of scenes apart
+};
+
+// From this share of its budget on a store is nearly full.
+inline constexpr double kNearlyFull = 0.75;
+
+template <class Tree>
+class BlockLedger {
+ public:
+  using Node = typename Tree::Node;
+  using Store = TreeStore<Tree>;
+
+  // `kind` tells stores apart. Keeps a reference to the costs.
+  BlockLedger(uint64_t kind, const BuildCosts& costs) : kind_(kind), costs_(costs) {}
+
+  // The policy to go by, from AllPolicies; empty: the store's own order, least recently used first.
+  void SetPolicy(std::string_view name) {
+    policy_name_ = std::string(name);
+    Reset();
+  }
+  // To be called when the store has changed in other ways than by growing or Evict.
+  void Reset() {
+    held_ = {};
+    policy_.reset();
+  }
+
+  // Books what has been used at `since` or later, when the store is nearly full for its budget or
+  // somebody records.
+  void EndFrame(const Store& store, uint32_t since, uint64_t budget, const FrameMark& mark) {
+    const auto bytes = static_cast<double>(store.byte_size());
+    const bool nearly_full = bytes > kNearlyFull * static_cast<double>(budget);
+    if (!nearly_full || policy_name_.empty()) Reset();
+    if (!policy_ && mark.recorder == nullptr) {
+      if (nearly_full && !policy_name_.empty()) Start(store, budget);
+      return;
+    }
+    std::vector<PolicyItem> items;
+    ForEachBlock(store, [&](const Block& block, uint32_t used) {
+      if (used < since) return;
+      PolicyItem item = ItemOf(store, block);
+      if (policy_) Use(block, item);
+      item.id ^= mark.salt;
+      if (mark.recorder != nullptr) items.push_back(item);
+    });
+    if (policy_) policy_->NextFrame();
+    if (mark.recorder != nullptr) mark.recorder->Add(mark.frame, items);
+  }
+
+  // Until the store holds at most `target` bytes. What was used at `pinned` or later stays as long
+  // as there is anything else.
+  void Evict(Store& store, uint64_t target, uint32_t pinned, std::shared_mutex& mutex) {
+    if (store.byte_size() <= target) return;
+    if (!policy_ && !policy_name_.empty()) Start(store, target);
+    size_t spared = 0;
+    while (policy_ && store.byte_size() > target && !held_.empty()) {
+      const std::vector<Block> victims = Choose(store, target, pinned, spared);
+      typename Store::Removed removed;  // destroyed without the lock
+      const std::unique_lock lock(mutex);
+      for (const Block& victim : victims) {
+        victim.parent != nullptr ? store.TakeChildren(*victim.parent, removed)
+                                 : store.TakeTree(victim.object, removed);
+      }
+    }
+    if (store.byte_size() <= target) return;
+    const std::unique_lock lock(mutex);
+    store.Evict(target);
+    Reset();
+  }
+
+  const std::string& policy_name() const { return policy_name_; }
+  uint64_t ByteSize() const {
+    return held_.capacity() * (sizeof(typename Held::value_type) + 1) +
+           (policy_ ? policy_->ByteSize() : 0);
+  }
+
+ private:
+  // So many victims at a time are taken away under the lock.
+  static constexpr size_t kMostVictims = 64;
+
+  struct Block {
+    Node* parent = nullptr;  // null: the roots of the object's tree
+    size_t object = 0;
+    uint64_t bytes = 0;  // as the policy knows them
+  };
+  using Held = absl::flat_hash_map<uint64_t, Block>;
+
+  uint64_t IdOf(const Block& block) const {
+    return block.parent == nullptr
+               ? TreeId(kind_, block.object)
+               : BlockId(kind_, block.object, block.parent->root, block.parent->cell);
+  }
+  // visit(Node&) for the cells of a block.
+  template <class Fn>
+  static void ForEachCell(const Store& store, const Block& block, Fn&& visit) {
+    if (block.parent == nullptr) {
+      store.Get(block.object)->cells().ForEachRoot(visit);
+    } else {
+      for (Node& child : *block.parent->children) visit(child);
+    }
+  }
+  PolicyItem ItemOf(const Store& store, const Block& block) const {
+    uint64_t bytes = block.parent == nullptr ? store.Get(block.object)->OwnBytes()
+                                             : sizeof(*block.parent->children);
+    uint64_t cells = 0;
+    ForEachCell(store, block, [&](const Node& cell) {
+      bytes += Node::BytesOf(cell.payload.get());
+      cells += cell.payload ? 1 : 0;
+    });
+    const float ns = static_cast<float>(cells) * costs_.NsPerCell(block.object);
+    return {IdOf(block), bytes, std::max(1.0f, ns)};
+  }
+
+  // visit(const Block&, used) for all blocks, those below others first; `used` is when any cell in
+  // or below the block was used last.
+  template <class Fn>
+  static void ForEachBlock(const Store& store, Fn&& visit) {
+    store.ForEachTree([&](size_t object, Tree& tree) {
+      uint32_t used = 0;
+      tree.cells().ForEachRoot(
+          [&](Node& root) { used = std::max(used, VisitBelow(object, root, visit)); });
+      visit(Block{.object = object}, used);
+    });
+  }
+  template <class Fn>
+  static uint32_t VisitBelow(size_t object, Node& node, Fn& visit) {
+    const uint32_t own = node.last_used.load(std::memory_order_relaxed);
+    if (!node.children) return own;
+    uint32_t used = 0;
+    for (Node& child : *node.children) used = std::max(used, VisitBelow(object, child, visit));
+    visit(Block{&node, object}, used);
+    return std::max(own, used);
+  }
+
+  void Use(Block block, const PolicyItem& item) {
+    block.bytes = item.bytes;
+    const auto [found, is_new] = held_.try_emplace(item.id, block);
+    if (is_new) return policy_->Insert(item);
+    if (std::exchange(found->second.bytes, item.bytes) != item.bytes) policy_->Change(item);
+    policy_->Access(item.id);
+  }
+
+  // With all blocks that there are, from the one that was used longest ago on.
+  void Start(const Store& store, uint64_t budget) {
+    policy_ = *MakePolicy(policy_name_, budget);
+    std::vector<std::pair<uint32_t, Block>> blocks;
+    ForEachBlock(store,
+                 [&](const Block& block, uint32_t used) { blocks.emplace_back(used, block); });
+    std::stable_sort(blocks.begin(), blocks.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [used, block] : blocks) Use(block, ItemOf(store, block));
+    policy_->NextFrame();
+  }
+
+  bool HasBelow(const Node& node) const { return node.children && !gone_.contains(&node); }
+  bool IsLeaf(const Store& store, const Block& block) const {
+    bool is_leaf = true;
+    ForEachCell(store, block, [&](const Node& cell) { is_leaf = is_leaf && !HasBelow(cell); });
+    return is_leaf;
+  }
+  static uint32_t UsedOf(const Store& store, const Block& block) {
+    uint32_t used = 0;
+    ForEachCell(store, block, [&](const Node& cell) {
+      used = std::max(used, cell.last_used.load(std::memory_order_relaxed));
+    });
+    return used;
+  }
+  // A block without others below it, at or below this one.
+  Block LeafOf(const Store& store, Block block) const {
+    while (!IsLeaf(store, block)) {
+      Node* next = nullptr;
+      ForEachCell(store, block, [&](Node& cell) { next = HasBelow(cell) ? &cell : next; });
+      block.parent = next;
+    }
+    return block;
+  }
+
+  // Blocks to take away, in an order in which they are leaves, and tells the policy that they went.
+  // `spared` counts those that were not for being in use or no leaf; once each, none is any more.
+  std::vector<Block> Choose(const Store& store, uint64_t target, uint32_t pinned, size_t& spared) {
+    std::vector<Block> victims;
+    gone_.clear();
+    uint64_t bytes = store.byte_size();
+    while (bytes > target && victims.size() < kMostVictims && !held_.empty()) {
+      const uint64_t picked = policy_->PickVictim();
+      Block block = held_.at(picked);
+      if (spared <= held_.size()) {
+        if (!IsLeaf(store, block) || UsedOf(store, block) >= pinned) {
+          policy_->Spare(picked);
+          ++spared;
+          continue;
+        }
+      }
+      block = LeafOf(store, block);
+      const PolicyItem item = ItemOf(store, block);
+      bytes -= std::min(bytes, item.bytes);
+      victims.push_back(block);
+      if (block.parent != nullptr) gone_.insert(block.parent);
+      // A block that was never booked is no item of the policy.
+      if (held_.erase(item.id) > 0) policy_->Evict(item.id);
+    }
+    return victims;
+  }
+
+  const uint64_t kind_;
+  const BuildCosts& costs_;
+  std::string policy_name_;
+  std::unique_ptr<EvictionPolicy> policy_;  // null: not started
+  Held held_;                               // by id
+  absl::flat_hash_set<const Node*> gone_;   // parents of victims that are still there
+};
+
+}  // namespace linetree
