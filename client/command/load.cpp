@@ -19,7 +19,8 @@ namespace linetree {
 namespace {
 
 constexpr int kMaxClients = 1024;
-constexpr double kMaxRate = 1e5;  // frames per second
+constexpr double kMaxRate = 1e5;      // frames per second
+constexpr double kMaxArrivals = 1e7;  // of one test: a sample is kept of each
 constexpr uint64_t kMaxStatsBytes = uint64_t{64} << 20;
 
 struct LoadFlags {
@@ -63,6 +64,11 @@ absl::StatusOr<LoadPlan> PlanOf(const LoadFlags& flags) {
     plan.paths.push_back(*std::move(cameras));
   }
   plan.pieces = PlanPieces(static_cast<size_t>(flags.clients), path_frames, flags.overlap);
+  if (flags.rate && *flags.rate * flags.duration_s > kMaxArrivals) {
+    return absl::InvalidArgumentError(absl::StrCat("--rate: expected at most ", kMaxArrivals,
+                                                   " frames within --duration, got ",
+                                                   *flags.rate * flags.duration_s));
+  }
   if (flags.rate) {
     plan.arrivals = flags.arrivals;
     plan.arrivals->rate = *flags.rate;

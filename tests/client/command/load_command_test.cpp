@@ -104,5 +104,18 @@ TEST(LoadCommand, AFailingFrameEndsIt) {
   EXPECT_THAT(run.err, HasSubstr("width"));
 }
 
+TEST(LoadCommand, ItsFlagsAreChecked) {
+  Finished run = RunLinetree(Load({"--objective", "p99_ms=1", "--objective", "speed=1"}));
+  EXPECT_EQ(run.exit_status, 2);
+  EXPECT_THAT(run.err, HasSubstr("expected one of frames_per_s, p50_ms"));
+  run = RunLinetree(Load({"--rate", "100000", "--duration", "100000"}));
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("at most 1e+07 frames"));
+  EXPECT_EQ(RunLinetree(Load({"--rate", "10", "--stream"})).exit_status, 2);
+  run = RunLinetree(Load({"--compare", SourceFile("scenes/face.textproto")}));
+  EXPECT_EQ(run.exit_status, 1);
+  EXPECT_THAT(run.err, HasSubstr("expected what 'load --stats' writes"));
+}
+
 }  // namespace
 }  // namespace linetree
