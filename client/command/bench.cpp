@@ -13,6 +13,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   AddBenchError(*app, commands);
   AddBenchPaper(*app, commands);
   AddBenchPeers(*app, commands);
+  AddBenchPolicies(*app, commands);
   AddBenchRays(*app, commands);
   AddBenchReport(*app, commands);
   AddBenchSpeed(*app, commands);

@@ -51,6 +51,7 @@ void AddBenchEdit(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 void AddBenchPeers(CLI::App& bench, Commands& commands);
+void AddBenchPolicies(CLI::App& bench, Commands& commands);
 void AddBenchRays(CLI::App& bench, Commands& commands);
 void AddBenchReport(CLI::App& bench, Commands& commands);
 void AddBenchSpeed(CLI::App& bench, Commands& commands);

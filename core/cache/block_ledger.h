@@ -2,7 +2,9 @@
 //
 // A block is the children of one cell, or the roots of one tree. Blocks go leaf-first: one goes
 // when nothing below it is left. What is used by frames under way or was by the last one stays, as
-// far as the budget permits. A ledger starts when its store is nearly full, and is empty before.
+// far as the budget permits. A ledger starts when its store is nearly full, and is empty before;
+// its bytes count in the budget, of which it never takes more than half: in so small a one there is
+// no policy.
 //
 // Thread safety: as the store's, but for readers: its owner lets nobody else change the store
 // meanwhile. What readers may see is changed under the lock that Evict is given.
@@ -55,10 +57,10 @@ class BlockLedger {
     policy_.reset();
   }
 
-  // Books what has been used at `since` or later, when the store is nearly full for its budget or
-  // somebody records.
+  // Books what has been used at `since` or later, when the store is nearly full for the budget that
+  // it shares with the ledger, or somebody records.
   void EndFrame(const Store& store, uint32_t since, uint64_t budget, const FrameMark& mark) {
-    const auto bytes = static_cast<double>(store.byte_size());
+    const auto bytes = static_cast<double>(store.byte_size() + ByteSize());
     const bool nearly_full = bytes > kNearlyFull * static_cast<double>(budget);
     if (!nearly_full || policy_name_.empty()) Reset();
     if (!policy_ && mark.recorder == nullptr) {
@@ -74,17 +76,19 @@ class BlockLedger {
       if (mark.recorder != nullptr) items.push_back(item);
     });
     if (policy_) policy_->NextFrame();
+    KeepWithin(budget / 2);
     if (mark.recorder != nullptr) mark.recorder->Add(mark.frame, items);
   }
 
-  // Until the store holds at most `target` bytes. What was used at `pinned` or later stays as long
-  // as there is anything else.
+  // Until store and ledger hold at most `target` bytes. What was used at `pinned` or later stays as
+  // long as there is anything else.
   void Evict(Store& store, uint64_t target, uint32_t pinned, std::shared_mutex& mutex) {
-    if (store.byte_size() <= target) return;
+    if (store.byte_size() + ByteSize() <= target) return;
     if (!policy_ && !policy_name_.empty()) Start(store, target);
     size_t spared = 0;
-    while (policy_ && store.byte_size() > target && !held_.empty()) {
-      const std::vector<Block> victims = Choose(store, target, pinned, spared);
+    while (policy_ && store.byte_size() + ByteSize() > target && !held_.empty()) {
+      const uint64_t room = target - std::min(target, ByteSize());
+      const std::vector<Block> victims = Choose(store, room, pinned, spared);
       typename Store::Removed removed;  // destroyed without the lock
       const std::unique_lock lock(mutex);
       for (const Block& victim : victims) {
@@ -92,10 +96,10 @@ class BlockLedger {
                                  : store.TakeTree(victim.object, removed);
       }
     }
-    if (store.byte_size() <= target) return;
+    if (store.byte_size() + ByteSize() <= target) return;
+    Reset();
     const std::unique_lock lock(mutex);
     store.Evict(target);
-    Reset();
   }
 
   const std::string& policy_name() const { return policy_name_; }
@@ -170,6 +174,9 @@ class BlockLedger {
     policy_->Access(item.id);
   }
 
+  void KeepWithin(uint64_t bytes) {
+    if (ByteSize() > bytes) Reset();
+  }
   // With all blocks that there are, from the one that was used longest ago on.
   void Start(const Store& store, uint64_t budget) {
     policy_ = *MakePolicy(policy_name_, budget);
@@ -180,6 +187,7 @@ class BlockLedger {
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [used, block] : blocks) Use(block, ItemOf(store, block));
     policy_->NextFrame();
+    KeepWithin(budget / 2);
   }
 
   bool HasBelow(const Node& node) const { return node.children && !gone_.contains(&node); }

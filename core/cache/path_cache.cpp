@@ -279,7 +279,9 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
 
 uint64_t PathCache::UsedBytes() const {
   uint64_t bytes = 0;
-  for (const auto& forest : forests_) bytes += forest->store.byte_size();
+  for (const auto& forest : forests_) {
+    bytes += forest->store.byte_size() + forest->ledger.ByteSize();
+  }
   return bytes;
 }
 
@@ -299,7 +301,7 @@ void PathCache::Evict() {
     const uint64_t used = UsedBytes();
     if (used <= target) return;
     const uint64_t excess = used - target;
-    const uint64_t held = forest->store.byte_size();
+    const uint64_t held = forest->store.byte_size() + forest->ledger.ByteSize();
     forest->ledger.Evict(forest->store, held > excess ? held - excess : 0, pinned_, mutex_);
   }
 }
@@ -313,7 +315,8 @@ void PathCache::EndFrame(const FrameMark& mark) {
   }
   const uint64_t target = EvictionTarget(memory_bytes_);
   for (const auto& forest : forests_) {
-    const uint64_t others = UsedBytes() - forest->store.byte_size();
+    const uint64_t own = forest->store.byte_size() + forest->ledger.ByteSize();
+    const uint64_t others = UsedBytes() - own;
     forest->ledger.EndFrame(forest->store, frame_begin_, target > others ? target - others : 0,
                             mark);
   }
@@ -383,7 +386,9 @@ void PathCache::SetMemoryBytes(uint64_t memory_bytes) {
 
 uint64_t PathCache::ByteSize() const {
   std::shared_lock lock(mutex_);
-  return UsedBytes();
+  uint64_t bytes = 0;
+  for (const auto& forest : forests_) bytes += forest->store.byte_size();
+  return bytes;
 }
 
 uint64_t PathCache::CountBytes() const {

@@ -135,6 +135,7 @@ class PathCache {
   std::vector<Sample> Descend(Forest& forest, std::vector<Group> groups, double weight,
                               const ParallelLoop& loop, size_t& allowance, uint64_t& certified);
   static std::vector<Group*> ChooseNew(std::vector<Group>& groups, size_t allowance);
+  // By trees and ledgers.
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.
   uint64_t BudgetOf(const Forest& forest) const;

@@ -69,7 +69,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
       works.push_back({&node, object, uses * weight});
     });
   });
-  store_.PlantWanted(memory_bytes_, [&](size_t object) {
+  store_.PlantWanted(TreeBudget(), [&](size_t object) {
     return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
   });
   return works;
@@ -138,12 +138,12 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
       if (!node.payload) {
         if (!work.lights) continue;  // the loop was cut short
         costs_.Add(work.object, work.ns);
-        if (!store_.Publish(node, std::move(work.lights), memory_bytes_)) continue;
+        if (!store_.Publish(node, std::move(work.lights), TreeBudget())) continue;
         node.ahead = thrift.ahead;
         ahead_.built += thrift.ahead ? 1 : 0;
         if (journal_ != nullptr) published.push_back(&work);
       }
-      if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, memory_bytes_))
+      if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, TreeBudget()))
         continue;
       for (SurfaceNode& child : *node.children) {
         next.push_back({&child, work.object, work.points / 4, node.payload.get()});

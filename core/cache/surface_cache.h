@@ -130,7 +130,11 @@ class SurfaceCache {
   // Certifies what the works ask for and puts it into the trees; the children's works come back.
   std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop,
                             const Thrift& thrift);
-  // Down to what a pass leaves. Needs refine_mutex_.
+  // What trees may take; the rest is the ledger's. Needs refine_mutex_, as the next one.
+  uint64_t TreeBudget() const {
+    return memory_bytes_ - std::min(memory_bytes_, ledger_.ByteSize());
+  }
+  // Down to what a pass leaves.
   void Evict();
 
   const LightCertifier certifier_;

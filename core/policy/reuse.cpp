@@ -3,9 +3,9 @@
 // Reuse is predicted from when items were used before, in frames (reuse_times.h), and evicted items
 // are remembered so that the ones that were missed count as well. What the owner expects of an item
 // (ExpectUse) stands in the place of that.
-#include <cmath>
+#include <algorithm>
+#include <bit>
 #include <functional>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -17,12 +17,17 @@ namespace linetree {
 namespace {
 
 // Evicted items that are remembered, in budgets.
-constexpr uint64_t kGhostBudgets = 2;
+constexpr uint64_t kGhostBudgets = 1;
 // Victims are chosen many at a time, this share of all items, and anew after so many calls.
-constexpr size_t kBatchShare = 16;
+constexpr size_t kBatchShare = 32;
 constexpr size_t kLeastBatch = 16;
-// An item's class: for how long it was away the last time but one, two classes to an octave.
-constexpr size_t kClasses = 24;
+// It is learnt when so many of the items, held or remembered, have been used again.
+constexpr size_t kLearnShare = 2;
+// An item's class: for how long it was away the last time, an octave each, and how often it has
+// been used since.
+constexpr size_t kAwayClasses = 10;
+constexpr size_t kRunClasses = 4;
+constexpr size_t kClasses = kAwayClasses * kRunClasses;
 
 class Reuse : public EvictionPolicy {
  public:
@@ -63,8 +68,8 @@ class Reuse : public EvictionPolicy {
       ChooseBatch();
       if (!SkipToGood()) return items_[held_.oldest()].item.id;  // all are spared
     }
-    const bool takes_recent = !recent_.empty() && recent_.top().worth < batch_[next_].worth;
-    return takes_recent ? recent_.top().id : batch_[next_].id;
+    const bool takes_recent = !recent_.empty() && recent_.front().worth < batch_[next_].worth;
+    return takes_recent ? recent_.front().id : batch_[next_].id;
   }
   void NextFrame() override { ++now_; }
   void ExpectUse(uint64_t id, double frames) override {
@@ -72,15 +77,16 @@ class Reuse : public EvictionPolicy {
   }
   uint64_t ByteSize() const override {
     return items_.ByteSize() + pasts_.capacity() * sizeof(Past) +
-           batch_.capacity() * sizeof(Candidate) + times_.ByteSize();
+           (batch_.capacity() + recent_.capacity()) * sizeof(Candidate) + times_.ByteSize();
   }
 
  private:
   struct Past {
-    uint32_t used = 0;          // frame of the last use
-    uint32_t spared = 0;        // frame in which it was
-    uint32_t away[2] = {0, 0};  // its last absences in frames, the last one first; 0: none yet
-    float expected = -1;        // frame of the next use, if the owner has said so
+    uint32_t used = 0;    // frame of the last use
+    uint32_t spared = 0;  // frame in which it was
+    uint32_t away = 0;    // its last absence in frames; 0: none yet
+    uint32_t run = 0;     // uses since then
+    float expected = -1;  // frame of the next use, if the owner has said so
   };
   struct Candidate {
     uint64_t id;
@@ -92,9 +98,9 @@ class Reuse : public EvictionPolicy {
   };
 
   static size_t ClassOf(const Past& past) {
-    const uint32_t away = past.away[1] != 0 ? past.away[1] : past.away[0];
-    if (away == 0) return 0;
-    return std::min(kClasses - 1, 1 + static_cast<size_t>(2 * std::log2(away)));
+    const auto away = static_cast<size_t>(std::bit_width(past.away));
+    const auto run = static_cast<size_t>(std::bit_width(past.run));
+    return std::min(away, kAwayClasses - 1) * kRunClasses + std::min(run, kRunClasses - 1);
   }
   void Use(ItemSlot slot) {
     Past& past = pasts_[slot];
@@ -102,10 +108,14 @@ class Reuse : public EvictionPolicy {
     past.expected = -1;
     if (gap == 0) return;
     times_.Ended(ClassOf(past), gap);
+    ++uses_;
     past.used = now_;
-    if (gap <= 2 * times_.usual_gap()) return;
-    past.away[1] = past.away[0];
-    past.away[0] = gap;
+    if (gap <= 2 * times_.usual_gap()) {
+      ++past.run;
+    } else {
+      past.away = gap;
+      past.run = 0;
+    }
   }
   double Worth(ItemSlot slot) const {
     const Past& past = pasts_[slot];
@@ -124,22 +134,40 @@ class Reuse : public EvictionPolicy {
   // Past candidates that have changed since they became some; false when the batch is used up.
   bool SkipToGood() {
     while (next_ < batch_.size() && !IsGood(batch_[next_])) ++next_;
-    while (!recent_.empty() && !IsGood(recent_.top())) recent_.pop();
+    while (!recent_.empty() && !IsGood(recent_.front())) {
+      std::pop_heap(recent_.begin(), recent_.end(), std::greater<>());
+      recent_.pop_back();
+    }
     return next_ < batch_.size();
   }
   // What has just been used may be worth less than what is in the batch.
-  void Offer(ItemSlot slot) { recent_.push(CandidateOf(slot)); }
+  void Offer(ItemSlot slot) {
+    if (next_ == batch_.size()) return;
+    recent_.push_back(CandidateOf(slot));
+    std::push_heap(recent_.begin(), recent_.end(), std::greater<>());
+    if (recent_.size() > items_.size() / 4 + kLeastBatch) DropBatch();
+  }
+  void DropBatch() {
+    batch_.clear();
+    recent_.clear();
+    next_ = 0;
+  }
   Candidate CandidateOf(ItemSlot slot) const {
     return {items_[slot].item.id, slot, pasts_[slot].used, Worth(slot)};
   }
   bool IsSpared(ItemSlot slot) const { return pasts_[slot].spared == now_; }
 
-  void ChooseBatch() {
+  void Learn() {
     times_.Begin(items_.size());
     items_.ForEach(
         [&](ItemSlot slot) { times_.Open(ClassOf(pasts_[slot]), now_ - pasts_[slot].used); });
     times_.Learn();
-    batch_.clear();
+    uses_ = 0;
+    has_learnt_ = true;
+  }
+  void ChooseBatch() {
+    if (!has_learnt_ || uses_ * kLearnShare >= items_.size()) Learn();
+    DropBatch();
     items_.ForEach([&](ItemSlot slot) {
       if (!held_.Holds(slot) || IsSpared(slot)) return;
       batch_.push_back(CandidateOf(slot));
@@ -148,8 +176,6 @@ class Reuse : public EvictionPolicy {
     const auto end = batch_.begin() + static_cast<std::ptrdiff_t>(wanted);
     std::partial_sort(batch_.begin(), end, batch_.end());
     batch_.erase(end, batch_.end());
-    next_ = 0;
-    recent_ = {};
     batch_frame_ = now_;
     calls_ = 0;
   }
@@ -161,9 +187,11 @@ class Reuse : public EvictionPolicy {
   uint32_t now_ = 1;
   std::vector<Candidate> batch_;  // those to go first, from next_ on
   size_t next_ = 0;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> recent_;  // used since
+  std::vector<Candidate> recent_;  // a heap of what was used since, the first to go on top
   uint32_t batch_frame_ = 0;
   size_t calls_ = 0;  // since the batch was chosen
+  size_t uses_ = 0;   // since it was learnt from them
+  bool has_learnt_ = false;
 };
 
 }  // namespace

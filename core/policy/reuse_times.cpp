@@ -49,7 +49,7 @@ void ReuseTimes::Learn() {
           std::min(1.0, (ended_[kind][bin] + kLeanOn * usual) / (reached[kind][bin] + kLeanOn));
     }
     for (size_t bin = 0; bin < kAges; ++bin) worth_[kind][bin] = Index(hazard, bin, 0);
-    fresh_[kind] = Index(hazard, 0, 0.5);
+    fresh_[kind] = Index(hazard, 0, 1);
   }
 }
 

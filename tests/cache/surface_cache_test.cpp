@@ -276,6 +276,7 @@ TEST_F(SurfaceCacheTest, EveryPolicyKeepsTheBudgetAndCountsWhatGoes) {
       Use(cache, round % 7, 300);
       certified += cache.Refine(50, kSerial);
       ASSERT_LE(cache.ByteSize(), kBudget) << policy;
+      ASSERT_LE(cache.ByteSize() + cache.LedgerBytes(), kBudget) << policy;
       if (round % 3 != 2) cache.EndFrame({});
       if (round == 15) cache.SetPolicy("lru");
       if (round == 18) cache.SetMemoryBytes(kBudget / 2);
@@ -283,7 +284,7 @@ TEST_F(SurfaceCacheTest, EveryPolicyKeepsTheBudgetAndCountsWhatGoes) {
       ASSERT_EQ(cache.ByteSize(), cache.CountBytes()) << policy;
       ASSERT_EQ(cache.CellCount() + cache.evicted().cells, certified) << policy;
     }
-    EXPECT_GT(cache.evicted().cells, 100u) << policy;
+    EXPECT_GT(cache.evicted().cells, 50u) << policy;
     EXPECT_GT(cache.evicted().bytes, 50 * cache.evicted().cells) << policy;
     cache.Clear();
     EXPECT_EQ(cache.ByteSize(), cache.CountBytes());

@@ -172,5 +172,41 @@ TEST(BenchCommand, EpsilonsAreChecked) {
   EXPECT_EQ(RunLinetree(BenchError({"--epsilons", "a"})).exit_status, 2);
 }
 
+TEST(BenchPoliciesCommand, ReplaysFlightsWithEveryPolicy) {
+  TempDir dir;
+  const Finished run = RunLinetree({"bench",    "policies",
+                                    "--scene",  SourceFile("scenes/room.textproto"),
+                                    "--flight", "orbit",
+                                    "--flight", "teleport",
+                                    "--frames", "12",
+                                    "--width",  "64",
+                                    "--height", "64",
+                                    "--traces", dir.File("."),
+                                    "--json",   dir.File("p.json"),
+                                    "--svg",    dir.File("p.svg")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("To reach: the best policy at most 1.15 x the bound: "));
+  const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
+  EXPECT_EQ(json["contests"].size(), 2u * 3);
+  ASSERT_EQ(json["rows"].size(), 2u * 3 * 12);
+  double least = 2;
+  for (const auto& row : json["rows"]) {
+    EXPECT_GE(row["regret"], 1 - 1e-9) << row["policy"];
+    least = std::min(least, row["regret"].get<double>());
+    EXPECT_GT(row["requests"], row["hits"]);
+  }
+  EXPECT_LT(least, 1.5);
+  // The same from the trace that it has left.
+  const Finished sim = RunLinetree({"cache", "sim", "--trace", dir.File("room_orbit.trace"),
+                                    "--policy", "fifo", "--json", dir.File("s.json")});
+  ASSERT_EQ(sim.exit_status, 0) << sim.err;
+  const auto again = nlohmann::json::parse(std::ifstream(dir.File("s.json")));
+  ASSERT_EQ(again.size(), 3u);
+  for (size_t i = 0; i < again.size(); ++i) {
+    EXPECT_EQ(json["rows"][i]["policy"], "fifo");
+    EXPECT_EQ(again[i]["rebuild_ns"], json["rows"][i]["rebuild_ns"]);
+  }
+}
+
 }  // namespace
 }  // namespace linetree
