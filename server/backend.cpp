@@ -13,7 +13,6 @@
 #include "core/io/wire_frame.h"
 #include "core/policy/policies.h"
 #include "core/store/data_folder.h"
-#include "server/limit_list.h"
 #include "server/scene_root.h"
 
 namespace linetree {
@@ -282,25 +281,6 @@ absl::StatusOr<v1::UnloadSceneReply> Backend::UnloadScene(const v1::UnloadSceneR
   return v1::UnloadSceneReply();
 }
 
-v1::GetStatsReply::SceneStats Backend::StatsOf(const NamedHost& scene) {
-  v1::GetStatsReply::SceneStats stats = SceneStatsToWire(scene.name, *scene.host);
-  *stats.mutable_audit() = AuditStatsToWire(scene.audit->values());
-  AnswerCountsToWire(scene.answers->values(), scene.host->scene(), &stats);
-  if (scene.pages) *stats.mutable_store() = StoreStatsToWire(scene.pages->counts());
-  return stats;
-}
-
-v1::GetLimitsReply Backend::GetLimits() const {
-  v1::GetLimitsReply reply;
-  for (const NamedLimit& limit : ListLimits(options_.limits)) {
-    v1::GetLimitsReply::Limit* out = reply.add_limits();
-    out->set_name(std::string(limit.name));
-    out->set_value(limit.value);
-    out->set_bounds(std::string(limit.bounds));
-  }
-  return reply;
-}
-
 absl::StatusOr<v1::TuneCacheReply> Backend::TuneCache(const v1::TuneCacheRequest& request) const {
   auto scene = scenes_.Find(request.scene(), "scene");
   if (!scene.ok()) return scene.status();
@@ -317,25 +297,6 @@ absl::StatusOr<v1::TuneCacheReply> Backend::TuneCache(const v1::TuneCacheRequest
   v1::TuneCacheReply reply;
   reply.set_policy(scene->host->policy());
   reply.set_memory_budget_bytes(scene->memory_bytes);
-  return reply;
-}
-
-absl::StatusOr<v1::GetStatsReply> Backend::GetStats(const v1::GetStatsRequest& request) const {
-  v1::GetStatsReply reply;
-  if (request.scene().empty()) {
-    for (const NamedHost& scene : scenes_.All()) {
-      *reply.add_scenes() = StatsOf(scene);
-    }
-  } else {
-    auto scene = scenes_.Find(request.scene(), "scene");
-    if (!scene.ok()) return scene.status();
-    *reply.add_scenes() = StatsOf(*scene);
-  }
-  reply.set_memory_budget_bytes(options_.memory_bytes);
-  const std::chrono::duration<double> up = std::chrono::steady_clock::now() - started_;
-  reply.set_uptime_s(up.count());
-  reply.set_server_version(LINETREE_VERSION);
-  reply.set_audit_share(options_.audit_share);
   return reply;
 }
 

@@ -108,7 +108,7 @@ class Backend {
   const std::shared_ptr<spdlog::logger> log_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   const std::unique_ptr<TraceRecorder> recorder_;  // null: nothing is recorded
-  const std::unique_ptr<CellStore> cells_;  // null: nothing is kept
+  const std::unique_ptr<CellStore> cells_;         // null: nothing is kept
   SceneStore scenes_;
   WorkerPool pool_;
   Budget frame_bytes_;
