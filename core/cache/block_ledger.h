@@ -111,6 +111,8 @@ class BlockLedger {
  private:
   // So many victims at a time are taken away under the lock.
   static constexpr size_t kMostVictims = 64;
+  // A policy may have to be told so often that an item stays until it picks others.
+  static constexpr size_t kMostSpared = 4;
 
   struct Block {
     Node* parent = nullptr;  // null: the roots of the object's tree
@@ -214,7 +216,7 @@ class BlockLedger {
   }
 
   // Blocks to take away, in an order in which they are leaves, and tells the policy that they went.
-  // `spared` counts those that were not for being in use or no leaf; once each, none is any more.
+  // `spared` counts those that were not for being in use or no leaf; in the end, none is any more.
   std::vector<Block> Choose(const Store& store, uint64_t target, uint32_t pinned, size_t& spared) {
     std::vector<Block> victims;
     gone_.clear();
@@ -222,7 +224,7 @@ class BlockLedger {
     while (bytes > target && victims.size() < kMostVictims && !held_.empty()) {
       const uint64_t picked = policy_->PickVictim();
       Block block = held_.at(picked);
-      if (spared <= held_.size()) {
+      if (spared <= kMostSpared * held_.size()) {
         if (!IsLeaf(store, block) || UsedOf(store, block) >= pinned) {
           policy_->Spare(picked);
           ++spared;

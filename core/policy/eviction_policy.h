@@ -43,8 +43,8 @@ class EvictionPolicy {
   virtual uint64_t PickVictim() = 0;
   // A held item, as a rule the victim, has been evicted: it may come back.
   virtual void Evict(uint64_t id) = 0;
-  // The victim stays after all, being in use: it counts as used, and another one's turn comes, of
-  // the same queue where a policy has several.
+  // The victim stays after all, being in use: another one's turn comes, of the same queue where a
+  // policy has several.
   virtual void Spare(uint64_t id) { Access(id); }
 
   // Ends a frame.

@@ -16,7 +16,13 @@ class Lfu : public EvictionPolicy {
     items_.Erase(slot);
   }
   void Evict(uint64_t id) override { Remove(id); }
-  uint64_t PickVictim() override { return items_[heap_.first()].item.id; }
+  uint64_t PickVictim() override {
+    if (heap_.IsEmpty()) heap_.Restore();
+    return items_[heap_.first()].item.id;
+  }
+  // Whose key is far below all others would be the victim again and again.
+  void Spare(uint64_t id) override { heap_.Hide(items_.At(id)); }
+  void NextFrame() override { heap_.Restore(); }
   uint64_t ByteSize() const override { return items_.ByteSize() + heap_.ByteSize(); }
 
  private:

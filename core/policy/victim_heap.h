@@ -18,7 +18,7 @@ class VictimHeap {
   // Puts an item in, or gives it another key.
   void Set(ItemSlot slot, double key) {
     if (slot >= place_.size()) place_.resize(slot + size_t{1}, kNowhere);
-    if (place_[slot] == kNowhere) {
+    if (place_[slot] >= kHidden) {
       place_[slot] = heap_.size();
       heap_.push_back({});
     }
@@ -27,6 +27,7 @@ class VictimHeap {
   }
   void Take(ItemSlot slot) {
     const size_t at = std::exchange(place_[slot], kNowhere);
+    if (at == kHidden) return;
     const Place last = heap_.back();
     heap_.pop_back();
     if (last.slot == slot) return;
@@ -34,8 +35,23 @@ class VictimHeap {
     place_[last.slot] = at;
     Settle(at);
   }
+  // Takes an item out until Restore, as if it were in.
+  void Hide(ItemSlot slot) {
+    const double key = heap_[place_[slot]].key;
+    Take(slot);
+    place_[slot] = kHidden;
+    hidden_.emplace_back(slot, key);
+  }
+  void Restore() {
+    // Who was hidden twice, having been another item meanwhile, has the later key.
+    for (; !hidden_.empty(); hidden_.pop_back()) {
+      const auto [slot, key] = hidden_.back();
+      if (place_[slot] == kHidden) Set(slot, key);
+    }
+  }
   uint64_t ByteSize() const {
-    return heap_.capacity() * sizeof(Place) + place_.capacity() * sizeof(size_t);
+    return heap_.capacity() * sizeof(Place) + place_.capacity() * sizeof(size_t) +
+           hidden_.capacity() * sizeof(hidden_[0]);
   }
 
  private:
@@ -45,7 +61,7 @@ class VictimHeap {
     ItemSlot slot = kNoItem;
     bool operator<(const Place& o) const { return key < o.key || (key == o.key && when < o.when); }
   };
-  static constexpr size_t kNowhere = ~size_t{0};
+  static constexpr size_t kNowhere = ~size_t{0}, kHidden = kNowhere - 1;
 
   void Swap(size_t a, size_t b) {
     std::swap(heap_[a], heap_[b]);
@@ -68,6 +84,7 @@ class VictimHeap {
 
   std::vector<Place> heap_;
   std::vector<size_t> place_;  // by slot
+  std::vector<std::pair<ItemSlot, double>> hidden_;
   uint64_t clock_ = 0;
 };
 

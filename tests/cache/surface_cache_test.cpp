@@ -291,26 +291,25 @@ TEST_F(SurfaceCacheTest, EveryPolicyKeepsTheBudgetAndCountsWhatGoes) {
   }
 }
 
-// Of two views of which only one fits, the one of the last frame is still known.
+// What has to go first is what only former frames have used.
 TEST_F(SurfaceCacheTest, WhatTheLastFrameUsedStays) {
-  const auto learn = [&](SurfaceCache& cache, uint64_t seed) {
-    for (int round = 0; round < 6; ++round) {
-      Use(cache, seed, 200);
-      cache.Refine(60, kSerial);
-    }
-    const int known = Use(cache, seed, 200);
-    cache.EndFrame({});
-    return known;
-  };
+  constexpr int kLast = 30;
   for (const std::string& policy : PoliciesAndNone()) {
     SurfaceCache cache(tracer_, 10'000'000);
     cache.SetPolicy(policy);
-    for (uint64_t seed = 2; seed < 6; ++seed) learn(cache, seed);
-    const int known = learn(cache, 1);
+    for (uint64_t round = 0; round < 20; ++round) {
+      Use(cache, 2 + round % 5, 200);
+      cache.Refine(60, kSerial);
+    }
+    cache.EndFrame({});
+    const int known = Use(cache, 1, kLast);
+    cache.EndFrame({});
     const uint64_t all = cache.ByteSize();
-    cache.SetMemoryBytes(all - all / 8);  // a quarter has to go
-    EXPECT_LT(cache.ByteSize(), all * 4 / 5) << policy;
-    EXPECT_EQ(Use(cache, 1, 200), known) << policy;
+    for (uint64_t budget = 2 * all; cache.ByteSize() == all; budget -= all / 32) {
+      cache.SetMemoryBytes(budget);
+    }
+    EXPECT_GT(known, kLast / 2);
+    EXPECT_EQ(Use(cache, 1, kLast), known) << policy;
   }
 }
 
