@@ -86,6 +86,7 @@ void FlyCall::SubmitNext() {
   timer_ = {};
   timer_.Enter(FrameTimer::Stage::kQueue);
   // At most one job per flight, and flights are counted: these jobs need no bound of their own.
+  backend_.look_ahead().Yield();
   const auto job = backend_.renders().Submit(
       {.session = absl::StrCat("flight ", token_.session),
        // What is more than may be asked for is refused in its turn.

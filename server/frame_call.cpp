@@ -26,6 +26,7 @@ absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
   if (!frame.ok()) return frame.status();
   frame_ = *std::move(frame);
   timer_.Enter(FrameTimer::Stage::kQueue);
+  backend_.look_ahead().Yield();
   const auto job = backend_.renders().Submit(
       {.session = info_.session, .work_rays = EstimatedRays(message), .deadline = info_.deadline},
       [call = self_](const absl::Status& turn) { call->Run(turn); });

@@ -7,9 +7,10 @@
 namespace linetree {
 namespace {
 
-bool HasRoom(const SceneHost& host, uint64_t memory_bytes) {
-  return static_cast<double>(host.CacheBytes()) <
-         kLookAheadShare * static_cast<double>(memory_bytes);
+bool HasRoom(SceneHost& host, uint64_t memory_bytes) {
+  const double room = kLookAheadShare * static_cast<double>(memory_bytes);
+  return static_cast<double>(host.surfaces().ByteSize()) < kSurfaceShare * room &&
+         static_cast<double>(host.paths().ByteSize()) < kPathShare * room;
 }
 
 }  // namespace
@@ -26,6 +27,11 @@ void LookAhead::Begin() {
   if (!on_) return;
   const std::lock_guard lock(mutex_);
   ++asked_;
+  if (cancel_) cancel_->Cancel();
+}
+
+void LookAhead::Yield() {
+  const std::lock_guard lock(mutex_);
   if (cancel_) cancel_->Cancel();
 }
 
@@ -47,6 +53,7 @@ void LookAhead::SubmitIfIdle() {
                                   .has_place = true},
                                  [this](const absl::Status& turn) { Render(turn); });
   LT_CHECK(job.ok());
+  job_ = *job;
   has_job_ = true;
 }
 
@@ -56,7 +63,7 @@ void LookAhead::Render(const absl::Status& turn) {
   {
     const std::lock_guard lock(mutex_);
     // Whoever has come meanwhile goes first; what waits waits on.
-    if (turn.ok() && !stopping_ && asked_ == 0) {
+    if (turn.ok() && !stopping_ && asked_ == 0 && queue_.waiting() == 0) {
       offered = std::exchange(next_, std::nullopt);
       host = offered ? offered->host.lock() : nullptr;
       if (host) cancel_.emplace();
@@ -70,7 +77,8 @@ void LookAhead::Render(const absl::Status& turn) {
   const std::lock_guard lock(mutex_);
   cancel_.reset();
   has_job_ = false;
-  if (turn.ok()) SubmitIfIdle();
+  // Who waits in the queue will say so when it is done.
+  if (turn.ok() && queue_.waiting() == 0) SubmitIfIdle();
   ended_.notify_all();
 }
 
@@ -78,6 +86,7 @@ void LookAhead::Stop() {
   std::unique_lock lock(mutex_);
   stopping_ = true;
   if (cancel_) cancel_->Cancel();
+  if (has_job_) queue_.Withdraw(job_);
   ended_.wait(lock, [this] { return !has_job_; });
 }
 

@@ -16,7 +16,8 @@
 
 namespace linetree {
 
-// Of a scene's memory; where more is in use, what is learnt ahead would push out what is needed.
+// Of what surface trees and certified linetrees may take; where more is in use, what is learnt
+// ahead would push out what is needed.
 inline constexpr double kLookAheadShare = 0.75;
 
 class LookAhead {
@@ -38,6 +39,9 @@ class LookAhead {
    private:
     LookAhead& look_ahead_;
   };
+
+  // Somebody is going to ask: what is under way stops within a tile and leaves its thread.
+  void Yield();
 
   // Gives all up and waits for that; later ones are not begun.
   void Stop();
@@ -65,6 +69,7 @@ class LookAhead {
   std::optional<Offered> next_;
   int asked_ = 0;
   bool has_job_ = false;               // in the queue, or running
+  JobId job_ = 0;                      // that
   std::optional<CancelToken> cancel_;  // of the one that is rendered
   bool stopping_ = false;
 };

@@ -102,8 +102,10 @@ double NetworkMs(const LoadSample& sample) {
 }
 
 LoadFigures SummarizeLoad(const LoadPhase& phase) {
-  LoadFigures figures{
-      .phase = phase.name, .not_begun = phase.not_begun, .cells_built = phase.cells_built};
+  LoadFigures figures{.phase = phase.name,
+                      .not_begun = phase.not_begun,
+                      .cells_built = phase.cells_built,
+                      .cells_evicted = phase.cells_evicted};
   double last_s = 0;
   for (const LoadSample& sample : phase.samples) {
     figures.seconds = std::max(figures.seconds, sample.end_s);
@@ -113,7 +115,6 @@ LoadFigures SummarizeLoad(const LoadPhase& phase) {
     ++figures.frames;
     Add(sample.stats, figures.sources);
     figures.wire_bytes += sample.wire_bytes;
-    figures.cells_evicted += sample.stats.cells_evicted;
     if (sample.end_s >= last_s) figures.cache_bytes = sample.stats.cache_bytes;
     last_s = std::max(last_s, sample.end_s);
   }

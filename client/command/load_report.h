@@ -31,6 +31,7 @@ struct LoadPhase {
   std::vector<LoadSample> samples{};
   uint64_t not_begun = 0;    // were to begin before the time was up, but no client was free
   uint64_t cells_built = 0;  // of all trees of the scene, since the phase before
+  uint64_t cells_evicted = 0;
 };
 
 struct Quantiles {

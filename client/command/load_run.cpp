@@ -174,11 +174,19 @@ class PhaseRun {
 };
 
 // Cells of all trees of the scene of which something is known.
-absl::StatusOr<uint64_t> CountCells(Client& client, const std::string& scene) {
+// Of all trees of the scene, of either judge.
+struct CellCount {
+  uint64_t held = 0;
+  uint64_t evicted = 0;  // since the scene was loaded
+};
+
+absl::StatusOr<CellCount> CountCells(Client& client, const std::string& scene) {
   const auto stats = client.GetStats(scene);
   if (!stats.ok()) return stats.status();
   LT_CHECK(stats->scenes_size() == 1);
-  return stats->scenes(0).cells() + stats->scenes(0).surface_cells();
+  const auto& counts = stats->scenes(0);
+  return CellCount{counts.cells() + counts.surface_cells(),
+                   counts.cells_evicted() + counts.totals().cells_evicted()};
 }
 
 size_t FramesOfAll(const LoadPlan& plan) {
@@ -221,10 +229,9 @@ absl::StatusOr<std::vector<LoadPhase>> RunLoad(const LoadPlan& plan,
     const auto after = CountCells(*clients.front(), plan.scene);
     if (!after.ok()) return after.status();
     result->name = name;
-    result->cells_built = *after > *before ? *after - *before : 0;
-    for (const LoadSample& sample : result->samples) {
-      result->cells_built += sample.stats.cells_evicted;
-    }
+    result->cells_evicted = after->evicted - before->evicted;
+    const uint64_t known = after->held + result->cells_evicted;
+    result->cells_built = known > before->held ? known - before->held : 0;
     phases.push_back(*std::move(result));
   }
   return phases;

@@ -23,7 +23,9 @@ const std::vector<ReportChapter>& ReportChapters() {
                                                       {"load", LoadSection},
                                                       {"certify", CertifySection},
                                                       {"audit", AuditSection},
-                                                      {"edit", EditSection}};
+                                                      {"edit", EditSection},
+                                                      {"policies", PoliciesSection},
+                                                      {"restart", RestartSection}};
   return chapters;
 }
 

@@ -26,6 +26,7 @@ PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
       max_depth_(max_depth),
       costs_(tracer.scene().objects.size()),
       memory_bytes_(memory_bytes) {
+  NoteLedgers();
   const Scene& scene = tracer.scene();
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     const Material& material = scene.MaterialOf(i);
@@ -185,7 +186,16 @@ size_t PathCache::Restore(const PathLimits& limits, std::span<KeptPathCell> cell
       break;
     ++restored;
   }
+  BeginAnew();
   return restored;
+}
+
+void PathCache::BeginAnew() { pinned_ = frame_begin_ = ++clock_; }
+
+void PathCache::NoteLedgers() {
+  uint64_t bytes = costs_.ByteSize();
+  for (const auto& forest : forests_) bytes += forest->ledger.ByteSize();
+  ledger_bytes_ = bytes;
 }
 
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
@@ -237,11 +247,12 @@ void PathCache::Evict() {
   const uint64_t target = EvictionTarget(memory_bytes_);
   for (Forest* forest : order) {
     const uint64_t used = UsedBytes();
-    if (used <= target) return;
+    if (used <= target) break;
     const uint64_t excess = used - target;
     const uint64_t held = forest->store.byte_size() + forest->ledger.ByteSize();
     forest->ledger.Evict(forest->store, held > excess ? held - excess : 0, pinned_, mutex_);
   }
+  NoteLedgers();
 }
 
 void PathCache::EndFrame(const FrameMark& mark) {
@@ -260,12 +271,14 @@ void PathCache::EndFrame(const FrameMark& mark) {
   }
   pinned_ = frame_begin_;
   frame_begin_ = ++clock_;
+  Evict();  // ledgers may have grown
 }
 
 void PathCache::SetPolicy(std::string_view name) {
   std::lock_guard refining(refine_mutex_);
   policy_name_ = std::string(name);
   for (const auto& forest : forests_) forest->ledger.SetPolicy(name);
+  NoteLedgers();
 }
 
 Evicted PathCache::evicted() const {
@@ -276,13 +289,6 @@ Evicted PathCache::evicted() const {
     all.bytes += forest->store.evicted().bytes;
   }
   return all;
-}
-
-uint64_t PathCache::LedgerBytes() const {
-  std::lock_guard refining(refine_mutex_);
-  uint64_t bytes = costs_.ByteSize();
-  for (const auto& forest : forests_) bytes += forest->ledger.ByteSize();
-  return bytes;
 }
 
 Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
@@ -306,6 +312,7 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
     }
     former.forests_.clear();
   }
+  BeginAnew();
   Evict();
   adopted.kept = CellCount();
   adopted.dropped -= adopted.kept;

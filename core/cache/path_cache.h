@@ -111,7 +111,7 @@ class PathCache {
   void EndFrame(const FrameMark& mark);
   void SetPolicy(std::string_view name);
   Evicted evicted() const;
-  uint64_t LedgerBytes() const;
+  uint64_t LedgerBytes() const { return ledger_bytes_; }
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
@@ -141,13 +141,17 @@ class PathCache {
   uint64_t BudgetOf(const Forest& forest) const;
   // Down to what a pass leaves. Needs refine_mutex_.
   void Evict();
+  // As SurfaceCache's.
+  void BeginAnew();
+  void NoteLedgers();
 
   const Tracer& tracer_;
   const PathCertifier certifier_;
   const SolidInteriors interiors_;
   const int max_depth_;
   CellJournal* journal_ = nullptr;
-  std::vector<bool> branches_;       // by object: whether it reflects or transmits
+  std::vector<bool> branches_;             // by object: whether it reflects or transmits
+  std::atomic<uint64_t> ledger_bytes_{0};  // not guarded
   mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   // Guarded by refine_mutex_:
   bool refines_ahead_ = false;

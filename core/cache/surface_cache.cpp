@@ -28,7 +28,9 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
       costs_(tracer.scene().objects.size()),
       ledger_(kLedgerKind, costs_),
       memory_bytes_(memory_bytes),
-      store_(tracer.scene(), memory_bytes) {}
+      store_(tracer.scene(), memory_bytes) {
+  NoteLedger();
+}
 
 SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon, uint32_t points)
     : cache_(cache), epsilon_(epsilon), points_(points), lock_(cache.mutex_) {}
@@ -168,8 +170,11 @@ size_t SurfaceCache::Restore(std::span<KeptSurfaceCell> cells) {
       break;
     ++restored;
   }
+  BeginAnew();
   return restored;
 }
+
+void SurfaceCache::BeginAnew() { pinned_ = frame_begin_ = ++clock_; }
 
 SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop,
                                          const Thrift& thrift) {
@@ -207,6 +212,8 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
         /*covers=*/true, [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });
   });
   store_.Evict(EvictionTarget(memory_bytes_));
+  BeginAnew();
+  NoteLedger();
   const uint64_t kept = store_.cell_count();
   return {kept, before - kept};
 }
@@ -222,7 +229,8 @@ void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {
 }
 
 void SurfaceCache::Evict() {
-  ledger_.Evict(store_, EvictionTarget(memory_bytes_), pinned_, mutex_);
+  ledger_.Evict(store_, std::min(EvictionTarget(memory_bytes_), TreeBudget()), pinned_, mutex_);
+  NoteLedger();
 }
 
 void SurfaceCache::EndFrame(const FrameMark& mark) {
@@ -235,21 +243,18 @@ void SurfaceCache::EndFrame(const FrameMark& mark) {
   ledger_.EndFrame(store_, frame_begin_, EvictionTarget(memory_bytes_), mark);
   pinned_ = frame_begin_;
   frame_begin_ = ++clock_;
+  Evict();  // the ledger may have grown
 }
 
 void SurfaceCache::SetPolicy(std::string_view name) {
   std::lock_guard refining(refine_mutex_);
   ledger_.SetPolicy(name);
+  NoteLedger();
 }
 
 Evicted SurfaceCache::evicted() const {
   std::shared_lock lock(mutex_);
   return store_.evicted();
-}
-
-uint64_t SurfaceCache::LedgerBytes() const {
-  std::lock_guard refining(refine_mutex_);
-  return costs_.ByteSize() + ledger_.ByteSize();
 }
 
 uint64_t SurfaceCache::ByteSize() const {

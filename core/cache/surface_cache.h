@@ -106,7 +106,7 @@ class SurfaceCache {
   void SetPolicy(std::string_view name);
   Evicted evicted() const;
   // Bytes beside the trees: of what eviction needs to know.
-  uint64_t LedgerBytes() const;
+  uint64_t LedgerBytes() const { return ledger_bytes_; }
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
@@ -136,11 +136,16 @@ class SurfaceCache {
   }
   // Down to what a pass leaves.
   void Evict();
+  // What is there has been used by no frame yet. Needs refine_mutex_, too.
+  void BeginAnew();
+  // Says how much the ledger takes.
+  void NoteLedger() { ledger_bytes_ = costs_.ByteSize() + ledger_.ByteSize(); }
 
   const LightCertifier certifier_;
   const DiffuseSummer summer_;
   const double min_uses_;
   CellJournal* journal_ = nullptr;
+  std::atomic<uint64_t> ledger_bytes_{0};  // not guarded
   mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
   // Guarded by refine_mutex_:
   BuildCosts costs_;

@@ -61,12 +61,20 @@ class Reuse : public EvictionPolicy {
     ghosts_.Push(slot);
     ghosts_.Shrink(kGhostBudgets * budget_bytes());
   }
-  void Spare(uint64_t id) override { pasts_[items_.At(id)].spared = now_; }
+  void Spare(uint64_t id) override {
+    const ItemSlot slot = items_.At(id);
+    // Once all are spared they are gone round.
+    if (std::exchange(pasts_[slot].spared, now_) == now_) held_.MakeNewest(slot);
+  }
   uint64_t PickVictim() override {
+    if (all_spared_ == now_) return items_[held_.oldest()].item.id;
     const bool is_old = batch_frame_ != now_ && calls_ * kBatchShare > items_.size();
     if (is_old || !SkipToGood()) {
       ChooseBatch();
-      if (!SkipToGood()) return items_[held_.oldest()].item.id;  // all are spared
+      if (!SkipToGood()) {
+        all_spared_ = now_;
+        return items_[held_.oldest()].item.id;
+      }
     }
     const bool takes_recent = !recent_.empty() && recent_.front().worth < batch_[next_].worth;
     return takes_recent ? recent_.front().id : batch_[next_].id;
@@ -142,6 +150,7 @@ class Reuse : public EvictionPolicy {
   }
   // What has just been used may be worth less than what is in the batch.
   void Offer(ItemSlot slot) {
+    if (!IsSpared(slot)) all_spared_ = 0;
     if (next_ == batch_.size()) return;
     recent_.push_back(CandidateOf(slot));
     std::push_heap(recent_.begin(), recent_.end(), std::greater<>());
@@ -189,8 +198,9 @@ class Reuse : public EvictionPolicy {
   size_t next_ = 0;
   std::vector<Candidate> recent_;  // a heap of what was used since, the first to go on top
   uint32_t batch_frame_ = 0;
-  size_t calls_ = 0;  // since the batch was chosen
-  size_t uses_ = 0;   // since it was learnt from them
+  uint32_t all_spared_ = 0;  // the frame in which every item has been
+  size_t calls_ = 0;         // since the batch was chosen
+  size_t uses_ = 0;          // since it was learnt from them
   bool has_learnt_ = false;
 };
 

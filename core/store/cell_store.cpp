@@ -10,6 +10,9 @@
 namespace linetree {
 namespace {
 
+// Scenes that go for one batch of pages at most: more would not help.
+constexpr int kMostTries = 8;
+
 int64_t SecondsNow() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::seconds>(now).count();
@@ -65,10 +68,12 @@ std::shared_ptr<ScenePages> CellStore::Attach(const std::string& name,
   if (odd.empty()) return pages;
   log_(absl::StrCat("cells of scene ", name, ": ", odd.size(),
                     " pages are not as they were written; they are left out and taken away"));
-  const auto erased = file_->Erase([&](const PageKey& key, std::string_view) {
-    return key.scene == version && key.algorithm == kAlgorithmVersion &&
-           std::find(odd.begin(), odd.end(), key.number) != odd.end();
-  });
+  const auto erased = file_->Erase(
+      [&](const PageKey& key, std::string_view) {
+        return key.scene == version && key.algorithm == kAlgorithmVersion &&
+               std::find(odd.begin(), odd.end(), key.number) != odd.end();
+      },
+      InUse());
   if (!erased.ok()) log_(std::string(erased.status().message()));
   return pages;
 }
@@ -102,30 +107,48 @@ void CellStore::WriteGathered() {
   }
   if (pages.empty() && notes.empty()) return;
   auto status = file_->Write(pages, notes);
-  while (absl::IsResourceExhausted(status) && MakeRoom()) status = file_->Write(pages, notes);
+  for (int i = 0; i < kMostTries && absl::IsResourceExhausted(status) && MakeRoom(); ++i) {
+    status = file_->Write(pages, notes);
+  }
   for (const auto& scene : scenes) scene->Taken(status.ok());
   if (std::exchange(fails_, !status.ok()) == fails_) return;
   log_(status.ok() ? absl::StrCat(file_->folder(), ": cells are kept again")
                    : absl::StrCat(status.message(), "; cells are not kept until that is mended"));
 }
 
+std::vector<SceneVersion> CellStore::InUse() {
+  const std::lock_guard lock(mutex_);
+  std::vector<SceneVersion> versions;
+  for (const auto& scene : scenes_) versions.push_back(scene->version());
+  return versions;
+}
+
 bool CellStore::MakeRoom() {
-  std::vector<SceneVersion> attached;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& scene : scenes_) attached.push_back(scene->version());
-  }
+  const std::vector<SceneVersion> in_use = InUse();
   const auto notes = file_->Notes();
   if (!notes.ok()) return false;
-  // Of the scenes that nobody has loaded, the one that was used longest ago.
-  const SceneNote* oldest = nullptr;
-  for (const SceneNote& note : *notes) {
-    if (std::find(attached.begin(), attached.end(), note.scene) != attached.end()) continue;
-    if (oldest == nullptr || note.last_used < oldest->last_used) oldest = &note;
-  }
-  const auto erased = file_->Erase([&](const PageKey& key, std::string_view) {
-    return key.algorithm != kAlgorithmVersion || (oldest != nullptr && key.scene == oldest->scene);
+  // By version: when those were used that have pages and that nobody has loaded; unknown is long
+  // ago.
+  std::map<SceneVersion, int64_t> others;
+  const auto status = file_->ForEach([&](const PageKey& key, std::string_view) {
+    const bool is_used = std::find(in_use.begin(), in_use.end(), key.scene) != in_use.end();
+    if (!is_used) others.emplace(key.scene, 0);
   });
+  if (!status.ok()) return false;
+  for (const SceneNote& note : *notes) {
+    if (const auto found = others.find(note.scene); found != others.end()) {
+      found->second = note.last_used;
+    }
+  }
+  const auto oldest =
+      std::min_element(others.begin(), others.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto erased = file_->Erase(
+      [&](const PageKey& key, std::string_view) {
+        return key.algorithm != kAlgorithmVersion ||
+               (oldest != others.end() && key.scene == oldest->first);
+      },
+      in_use);
   if (!erased.ok() || *erased == 0) return false;
   log_(
       absl::StrCat(file_->folder(), ": full; ", *erased, " pages of other programs and scenes go"));

@@ -1,9 +1,9 @@
 // The cells of all scenes of a server, kept on its disk: what one process has learnt, the next one
 // knows from the first frame on.
 //
-// Writing happens behind the caches' back: a thread takes what has gathered every second, or sooner
-// when it is much, and commits it as one. What is odd on the disk, and a disk that is full or
-// fails, cost what would have been known, and a line of the log; never an answer.
+// Writing happens behind the caches' back: a thread takes what has gathered every second and
+// commits it as one. What is odd on the disk, and a disk that is full or fails, cost what would
+// have been known, and a line of the log; never an answer.
 //
 // Thread safety: every method may be called from any thread.
 #pragma once
@@ -55,9 +55,10 @@ class CellStore {
   CellStore(const Options& options, std::unique_ptr<PageFile> file, Log log);
   void Run();
   void WriteGathered();
-  // Takes out what other programs and scenes that are not attached have kept, the oldest first.
-  // False where there is nothing of that kind.
+  // Takes out what other programs have kept, and the scene that was used longest ago of those that
+  // nobody has loaded. False where there is nothing of that kind.
   bool MakeRoom();
+  std::vector<SceneVersion> InUse();
 
   const Options options_;
   const std::unique_ptr<PageFile> file_;

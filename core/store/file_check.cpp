@@ -10,12 +10,20 @@
 #include <cstring>
 #include <filesystem>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 
 namespace linetree {
 namespace {
 
-constexpr unsigned kMostSeconds = 60;
+// Of the child: more than the slowest disk needs.
+constexpr unsigned kLeastSeconds = 60;
+constexpr uint64_t kBytesPerSecond = 2 << 20;
+
+// How the child ends. Sanitizers end a program that goes astray with 1.
+constexpr int kReadsWell = 0;
+constexpr int kIsOdd = 1;
+constexpr int kCannotTell = 2;
 
 // All bytes of all values; the sum keeps the compiler from leaving that out.
 int ReadDatabase(MDB_txn* txn, MDB_dbi database, size_t pages, unsigned& sum) {
@@ -67,7 +75,13 @@ int ReadAll(const char* folder) {
   return error;
 }
 
-[[noreturn]] void Child(const char* folder) {
+// LMDB's own errors are negative. A file that says it is huge finds no room or no sense in it.
+int ExitOf(int error) {
+  if (error == 0) return kReadsWell;
+  return error < 0 || error == EINVAL || error == ENOMEM ? kIsOdd : kCannotTell;
+}
+
+[[noreturn]] void Child(const char* folder, unsigned seconds) {
   // What it says before it dies is of no use to anybody.
   const int nowhere = open("/dev/null", O_WRONLY);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
@@ -75,35 +89,59 @@ int ReadAll(const char* folder) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  alarm(kMostSeconds);
-  _exit(ReadAll(folder) == 0 ? 0 : 1);
+  alarm(seconds);
+  _exit(ExitOf(ReadAll(folder)));
 }
 
 }  // namespace
 
-std::string OddityOf(const std::string& folder) {
+absl::StatusOr<std::string> OddityOf(const std::string& folder) {
+  const std::string file = folder + "/data.mdb";
   std::error_code error;
-  if (!std::filesystem::exists(folder + "/data.mdb", error)) return "";
+  if (!std::filesystem::exists(file, error)) return "";
+  const uint64_t bytes = std::filesystem::file_size(file, error);
   // Writers make the first page before anything else.
-  if (std::filesystem::file_size(folder + "/data.mdb", error) == 0) return "";
+  if (bytes == 0) return "";
+  const auto cannot_tell = [&](const char* why) {
+    return absl::UnavailableError(
+        absl::StrCat(file, ": cannot tell whether it can be read to its end: ", why));
+  };
+  // Whoever ignores its children, which is inherited, would not hear of this one.
+  struct sigaction former;
+  struct sigaction usual {};
+  usual.sa_handler = SIG_DFL;
+  sigaction(SIGCHLD, &usual, &former);
+  const absl::Cleanup restore = [&] { sigaction(SIGCHLD, &former, nullptr); };
   const pid_t child = fork();
-  if (child < 0) return absl::StrCat("no process to read it: ", std::strerror(errno));
-  if (child == 0) Child(folder.c_str());
+  if (child < 0) return cannot_tell(std::strerror(errno));
+  if (child == 0) {
+    Child(folder.c_str(), kLeastSeconds + static_cast<unsigned>(bytes / kBytesPerSecond));
+  }
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return absl::StrCat("waiting for its reader: ", std::strerror(errno));
+    if (errno != EINTR) return cannot_tell(std::strerror(errno));
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-  return "expected a database that can be read to its end, and it cannot";
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kReadsWell) return "";
+  const int sign = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  const bool went_astray =
+      sign == SIGSEGV || sign == SIGBUS || sign == SIGABRT || sign == SIGFPE || sign == SIGILL;
+  if (went_astray || (WIFEXITED(status) && WEXITSTATUS(status) == kIsOdd)) {
+    return "expected a database that can be read to its end, and it cannot";
+  }
+  return cannot_tell(sign == SIGALRM ? "it takes too long" : "its reader was refused or ended");
 }
 
-absl::Status PutAside(const std::string& folder) {
+absl::StatusOr<std::string> PutAside(const std::string& folder) {
   std::error_code error;
-  std::filesystem::rename(folder + "/data.mdb", folder + "/data.mdb.odd", error);
+  std::string name = "data.mdb.odd";
+  for (int i = 1; std::filesystem::exists(folder + "/" + name, error); ++i) {
+    name = absl::StrCat("data.mdb.odd", i);
+  }
+  std::filesystem::rename(folder + "/data.mdb", folder + "/" + name, error);
   // Readers' places in it mean nothing to the next one.
   std::error_code ignored;
   std::filesystem::remove(folder + "/lock.mdb", ignored);
-  if (!error) return absl::OkStatus();
+  if (!error) return name;
   return absl::UnavailableError(absl::StrCat(folder, "/data.mdb: renaming it: ", error.message()));
 }
 

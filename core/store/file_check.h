@@ -4,15 +4,16 @@
 
 #include <string>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 
 namespace linetree {
 
 // Empty where the folder's data.mdb can be read, or is not there; else what is odd about it, in a
-// few words. A child process reads all of it, and may die of it.
-std::string OddityOf(const std::string& folder);
+// few words. A child process reads all of it, and may die of it. UNAVAILABLE where that cannot be
+// told: there is no child, or it may not read the file or takes too long.
+absl::StatusOr<std::string> OddityOf(const std::string& folder);
 
-// Renames data.mdb to data.mdb.odd, which takes the place of a former one.
-absl::Status PutAside(const std::string& folder);
+// Renames data.mdb to a name that no file has yet, data.mdb.odd if possible, which it returns.
+absl::StatusOr<std::string> PutAside(const std::string& folder);
 
 }  // namespace linetree

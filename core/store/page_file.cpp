@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -26,6 +28,8 @@ constexpr const char* kNotes = "notes";
 constexpr size_t kVersionDigits = 32;
 // A sixteenth of the file is left for taking pages out, which takes room itself.
 constexpr uint64_t kReserve = 16;
+constexpr int kLockTries = 5;
+constexpr std::chrono::milliseconds kLockPause{20};
 
 absl::Status Failed(const std::string& folder, const char* what, int error) {
   const std::string message = absl::StrCat(folder, ": ", what, ": ", mdb_strerror(error));
@@ -127,11 +131,14 @@ absl::StatusOr<std::unique_ptr<PageFile>> PageFile::Open(const std::string& fold
   }
   // What another process writes it has read itself, and changes while it is read.
   const bool is_written = access == Access::kReadOnly && file->IsWritten();
-  if (const std::string odd = is_written ? "" : OddityOf(folder); !odd.empty()) {
-    const std::string message = absl::StrCat(folder, "/data.mdb: ", odd);
+  const auto odd = is_written ? absl::StatusOr<std::string>("") : OddityOf(folder);
+  if (!odd.ok()) return odd.status();
+  if (!odd->empty()) {
+    const std::string message = absl::StrCat(folder, "/data.mdb: ", *odd);
     if (access == Access::kReadOnly) return absl::DataLossError(message);
-    if (auto status = PutAside(folder); !status.ok()) return status;
-    if (found_odd != nullptr) *found_odd = absl::StrCat(message, "; it is now data.mdb.odd");
+    const auto name = PutAside(folder);
+    if (!name.ok()) return name.status();
+    if (found_odd != nullptr) *found_odd = absl::StrCat(message, "; it is now ", *name);
   }
   if (auto status = file->Start(access); !status.ok()) return status;
   if (access == Access::kWrite) SyncFolder(folder);
@@ -142,7 +149,11 @@ absl::Status PageFile::Lock() {
   const std::string name = folder_ + "/writer.lock";
   lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) return Failed(folder_, "opening writer.lock", errno);
-  if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
+  // Who only looks whether there is a writer has it for a moment, too.
+  for (int i = 0; i < kLockTries; ++i) {
+    if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
+    std::this_thread::sleep_for(kLockPause);
+  }
   return absl::FailedPreconditionError(
       absl::StrCat(folder_, ": another process keeps its cells there"));
 }
@@ -185,6 +196,8 @@ absl::Status PageFile::Write(std::span<const PageWrite> pages, std::span<const S
   uint64_t bytes = 0;
   for (const PageWrite& write : pages) bytes += write.page.size();
   const std::lock_guard lock(write_mutex_);
+  // Readers that were killed would keep what they have seen from being used again.
+  mdb_reader_check(env_, nullptr);
   if (SizesNow().used_bytes + bytes > max_ - max_ / kReserve) {
     return absl::ResourceExhaustedError(
         absl::StrCat(folder_, ": writing pages: no room in ", max_, " bytes"));
@@ -256,9 +269,9 @@ absl::StatusOr<std::vector<SceneNote>> PageFile::Notes() const {
   return notes;
 }
 
-absl::StatusOr<uint64_t> PageFile::Erase(const Drops& drops) {
+absl::StatusOr<uint64_t> PageFile::Erase(const Drops& drops, std::span<const SceneVersion> in_use) {
   std::vector<std::string> dropped;
-  absl::flat_hash_set<SceneVersion> kept;
+  absl::flat_hash_set<SceneVersion> kept(in_use.begin(), in_use.end());
   auto status = ForEach([&](const PageKey& key, std::string_view page) {
     if (drops(key, page)) {
       dropped.push_back(BytesOf(key));

@@ -65,10 +65,10 @@ class PageFile {
   absl::Status ForEach(const Visit& visit) const;
   absl::StatusOr<std::vector<SceneNote>> Notes() const;
 
-  // Takes the pages out for which drops(key, page) is true, and notes of scenes without pages.
-  // Returns the number of pages.
+  // Takes the pages out for which drops(key, page) is true, and notes of scenes without pages, but
+  // for those of `in_use`. Returns the number of pages.
   using Drops = std::function<bool(const PageKey& key, std::string_view page)>;
-  absl::StatusOr<uint64_t> Erase(const Drops& drops);
+  absl::StatusOr<uint64_t> Erase(const Drops& drops, std::span<const SceneVersion> in_use = {});
 
   struct Sizes {
     uint64_t file_bytes = 0;  // of the file, which does not shrink: what is free is used again

@@ -54,12 +54,14 @@ void ScenePages::Append(PageKind kind, const PathLimits& limits, const Place& pl
   const uint64_t hash = HashOf(kind, limits, place);
   const std::lock_guard lock(mutex_);
   if (known_.contains(hash)) return;
-  if (sealed_bytes_ > kMaxWaitingBytes) {
+  const Kind own = KindOf(kind, limits);
+  const bool has_place = open_.size() < kMaxPageKinds || open_.contains(own);
+  if (!keeps_ || !has_place || sealed_bytes_ > kMaxWaitingBytes || known_.size() >= kMaxKeptCells) {
     ++counts_.cells_lost;
     return;
   }
   known_.insert(hash);
-  OpenPage& page = open_[KindOf(kind, limits)];
+  OpenPage& page = open_[own];
   if (page.head.number == 0) {
     page.head = {kind, algorithm_, version_, limits, next_number_++, 0};
   }
@@ -113,10 +115,11 @@ bool ScenePages::TakeBackCells(const OpenedPage& page, const Decode& decode, con
   std::vector<Kept> cells;
   for (uint32_t i = 0; i < page.head.cells && in.ok(); ++i) cells.push_back(decode(in));
   if (!in.ok() || in.left() > 0) return false;
+  const size_t restored = give(std::span<Kept>(cells));
+  const std::lock_guard lock(mutex_);
   for (const Kept& cell : cells) {
     known_.insert(HashOf(page.head.kind, page.head.limits, cell.place));
   }
-  const size_t restored = give(std::span<Kept>(cells));
   counts_.cells_restored += restored;
   counts_.cells_left += cells.size() - restored;
   return true;
@@ -134,6 +137,8 @@ bool ScenePages::TakeBack(const OpenedPage& page, const Caches& caches) {
 }
 
 void ScenePages::GoOnWith(const OpenedPage& page) {
+  const std::lock_guard lock(mutex_);
+  if (!goes_on_) return;
   OpenPage& open = open_[KindOf(page.head.kind, page.head.limits)];
   if (open.changed || open.head.number > page.head.number) return;
   open.head = page.head;
@@ -144,13 +149,17 @@ void ScenePages::GoOnWith(const OpenedPage& page) {
 absl::Status ScenePages::Restore(const PageFile& file, const Caches& caches,
                                  const std::function<void(uint64_t)>& odd) {
   const auto began = std::chrono::steady_clock::now();
-  const std::lock_guard lock(mutex_);
+  // Without the lock where caches are asked: who holds theirs may be waiting for it.
   auto status = file.ForEach(version_, algorithm_, [&](const PageKey& key, std::string_view bytes) {
-    next_number_ = std::max(next_number_, key.number + 1);
+    {
+      const std::lock_guard lock(mutex_);
+      next_number_ = std::max(next_number_, key.number + 1);
+    }
     const auto page = linetree::OpenPage(bytes);
     const bool is_own = page && page->head.scene == version_ &&
                         page->head.algorithm == algorithm_ && page->head.number == key.number;
     if (!is_own || !TakeBack(*page, caches)) {
+      const std::lock_guard lock(mutex_);
       ++counts_.pages_odd;
       odd(key.number);
       return;
@@ -158,6 +167,9 @@ absl::Status ScenePages::Restore(const PageFile& file, const Caches& caches,
     if (page->cells.size() < kShortPageBytes) GoOnWith(*page);
   });
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+  const std::lock_guard lock(mutex_);
+  goes_on_ = false;
+  keeps_ = keeps_ && status.ok();
   counts_.restore_ms += took.count();
   return status;
 }

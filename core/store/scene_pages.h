@@ -25,13 +25,18 @@ namespace linetree {
 
 // Bytes of a scene's cells that wait to be written at most; what comes beyond is not kept.
 inline constexpr size_t kMaxWaitingBytes = size_t{32} << 20;
+// Kinds of pages that a process adds to: surfaces, and linetrees of as many path limits as caches
+// hold trees for. Cells of others are not kept.
+inline constexpr size_t kMaxPageKinds = 1 + kMaxPathForests;
+// Cells of a scene that are kept at most.
+inline constexpr size_t kMaxKeptCells = size_t{1} << 22;
 
 struct StoreCounts {
   uint64_t cells_restored = 0;  // given back to the caches
   uint64_t cells_left = 0;      // that were kept, but found no room in the caches
   uint64_t cells_written = 0;   // committed to the disk, by this process
-  uint64_t cells_lost = 0;  // that could not be written: no room on the disk, or too many at once
-  uint64_t pages_odd = 0;   // that were no pages, or not of this scene: left out
+  uint64_t cells_lost = 0;      // not kept: no room on the disk, or too many, at once or in all
+  uint64_t pages_odd = 0;       // that were no pages, or not of this scene: left out
   uint64_t waiting_bytes = 0;
   uint64_t index_bytes = 0;  // of memory, to know which cells are kept
   double restore_ms = 0;
@@ -93,6 +98,8 @@ class ScenePages : public CellJournal {
   // Guarded by mutex_:
   absl::flat_hash_set<uint64_t> known_;  // hashes of cells that are on the disk or on their way
   std::map<Kind, OpenPage> open_;
+  bool goes_on_ = true;  // with short pages: until the first Restore has ended
+  bool keeps_ = true;    // no more once a page could not be read: its number is not known
   std::vector<PageWrite> sealed_;
   uint64_t sealed_bytes_ = 0;
   uint64_t sealed_cells_ = 0;  // that were not counted yet
