@@ -56,7 +56,8 @@ absl::StatusOr<Json> HitRates(SceneHost& host, const std::vector<Camera>& camera
                               WorkerPool& pool, const std::function<void()>& done) {
   Json rates = Json::array();
   for (const Camera& camera : cameras) {
-    const auto frame = host.RenderFrame({.camera = camera, .width = side, .height = side, .options = {}}, pool);
+    const auto frame =
+        host.RenderFrame({.camera = camera, .width = side, .height = side, .options = {}}, pool);
     if (!frame.ok()) return frame.status();
     rates.push_back(HitRate(frame->stats));
     done();

@@ -2,16 +2,13 @@
 
 #include <fcntl.h>
 #include <lmdb.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -28,8 +25,6 @@ constexpr const char* kNotes = "notes";
 constexpr size_t kVersionDigits = 32;
 // A sixteenth of the file is left for taking pages out, which takes room itself.
 constexpr uint64_t kReserve = 16;
-constexpr int kLockTries = 5;
-constexpr std::chrono::milliseconds kLockPause{20};
 
 absl::Status Failed(const std::string& folder, const char* what, int error) {
   const std::string message = absl::StrCat(folder, ": ", what, ": ", mdb_strerror(error));
@@ -111,6 +106,14 @@ void SyncFolder(const std::string& folder) {
   close(fd);
 }
 
+// A lock on all of it, of whoever has opened it.
+struct flock WholeFile() {
+  struct flock lock = {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
 absl::Status MakeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -149,11 +152,8 @@ absl::Status PageFile::Lock() {
   const std::string name = folder_ + "/writer.lock";
   lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) return Failed(folder_, "opening writer.lock", errno);
-  // Who only looks whether there is a writer has it for a moment, too.
-  for (int i = 0; i < kLockTries; ++i) {
-    if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
-    std::this_thread::sleep_for(kLockPause);
-  }
+  struct flock lock = WholeFile();
+  if (fcntl(lock_, F_OFD_SETLK, &lock) == 0) return absl::OkStatus();
   return absl::FailedPreconditionError(
       absl::StrCat(folder_, ": another process keeps its cells there"));
 }
@@ -161,9 +161,11 @@ absl::Status PageFile::Lock() {
 bool PageFile::IsWritten() const {
   const int fd = open((folder_ + "/writer.lock").c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
-  const bool is_free = flock(fd, LOCK_SH | LOCK_NB) == 0;
+  // Looks without taking it.
+  struct flock lock = WholeFile();
+  const bool is_known = fcntl(fd, F_OFD_GETLK, &lock) == 0;
   close(fd);
-  return !is_free;
+  return is_known && lock.l_type != F_UNLCK;
 }
 
 absl::Status PageFile::Start(Access access) {

@@ -29,12 +29,15 @@ class ScriptedClient : public LocalClient {
     frame.camera = request.camera;
     frame.wire_bytes = 1000;
     frame.stats.interpolated = 1;
-    frame.stats.cells_evicted = 2;
     return frame;
   }
   absl::StatusOr<v1::GetStatsReply> GetStats(const std::string&) override {
     v1::GetStatsReply reply;
-    reply.add_scenes()->set_cells(static_cast<uint64_t>(10 * calls_));
+    v1::GetStatsReply::SceneStats& scene = *reply.add_scenes();
+    scene.set_cells(static_cast<uint64_t>(10 * calls_));
+    // One by each judge's trees.
+    scene.set_cells_evicted(static_cast<uint64_t>(calls_));
+    scene.mutable_totals()->set_cells_evicted(static_cast<uint64_t>(calls_));
     return reply;
   }
 
@@ -67,6 +70,7 @@ TEST(LoadRun, AClosedLoopFliesEveryPieceOnce) {
   EXPECT_EQ(phases->front().samples.size(), 4u);
   // Ten for each frame are there at the end, and two had been evicted.
   EXPECT_EQ(phases->front().cells_built, 4u * (10 + 2));
+  EXPECT_EQ(phases->front().cells_evicted, 4u * 2);
   for (const LoadSample& sample : phases->front().samples) {
     EXPECT_EQ(sample.intended_s, sample.start_s);
     EXPECT_LE(sample.start_s, sample.end_s);
