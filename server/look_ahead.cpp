@@ -27,12 +27,19 @@ void LookAhead::Begin() {
   if (!on_) return;
   const std::lock_guard lock(mutex_);
   ++asked_;
-  if (cancel_) cancel_->Cancel();
+  Disturb();
 }
 
 void LookAhead::Yield() {
+  if (!on_) return;
   const std::lock_guard lock(mutex_);
+  Disturb();
+}
+
+void LookAhead::Disturb() {
+  yields_ = true;
   if (cancel_) cancel_->Cancel();
+  disturbed_.notify_all();
 }
 
 void LookAhead::End() {
@@ -61,9 +68,12 @@ void LookAhead::Render(const absl::Status& turn) {
   std::optional<Offered> offered;
   std::shared_ptr<SceneHost> host;
   {
-    const std::lock_guard lock(mutex_);
-    // Whoever has come meanwhile goes first; what waits waits on.
-    if (turn.ok() && !stopping_ && asked_ == 0 && queue_.waiting() == 0) {
+    std::unique_lock lock(mutex_);
+    yields_ = false;
+    const auto is_disturbed = [&] { return stopping_ || asked_ > 0 || yields_; };
+    // Whoever comes goes first; what waits waits on.
+    if (turn.ok() && !disturbed_.wait_for(lock, kLeastIdle, is_disturbed) &&
+        queue_.waiting() == 0) {
       offered = std::exchange(next_, std::nullopt);
       host = offered ? offered->host.lock() : nullptr;
       if (host) cancel_.emplace();
@@ -85,7 +95,7 @@ void LookAhead::Render(const absl::Status& turn) {
 void LookAhead::Stop() {
   std::unique_lock lock(mutex_);
   stopping_ = true;
-  if (cancel_) cancel_->Cancel();
+  Disturb();
   if (has_job_) queue_.Withdraw(job_);
   ended_.wait(lock, [this] { return !has_job_; });
 }

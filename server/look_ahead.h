@@ -5,6 +5,7 @@
 // Thread safety: all methods may be called from any thread.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,10 @@ namespace linetree {
 // Of what surface trees and certified linetrees may take; where more is in use, what is learnt
 // ahead would push out what is needed.
 inline constexpr double kLookAheadShare = 0.75;
+
+// Nobody asks for so long before anything is rendered ahead: clients that ask at once, frame after
+// frame, leave nothing to spare.
+inline constexpr std::chrono::milliseconds kLeastIdle{10};
 
 class LookAhead {
  public:
@@ -55,7 +60,8 @@ class LookAhead {
 
   void Begin();
   void End();
-  // Needs mutex_.
+  // These need mutex_.
+  void Disturb();
   void SubmitIfIdle();
 
   void Render(const absl::Status& turn);
@@ -64,10 +70,11 @@ class LookAhead {
   WorkerPool& pool_;
   const bool on_;
   std::mutex mutex_;
-  std::condition_variable ended_;
+  std::condition_variable ended_, disturbed_;
   // Guarded by mutex_.
   std::optional<Offered> next_;
   int asked_ = 0;
+  bool yields_ = false;                // somebody has come since the job began
   bool has_job_ = false;               // in the queue, or running
   JobId job_ = 0;                      // that
   std::optional<CancelToken> cancel_;  // of the one that is rendered
