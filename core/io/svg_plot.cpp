@@ -99,8 +99,8 @@ class PlotDrawing {
     for (const PlotBand& band : plot_.y.bands) DrawBand(band, y_, /*upright=*/false);
     DrawAxes();
     for (size_t i = 0; i < plot_.series.size(); ++i) {
-      DrawSeries(plot_.series[i], kColors[i % kColors.size()]);
-      DrawLegend(i, plot_.series[i].name, kColors[i % kColors.size()]);
+      DrawSeries(i);
+      DrawLegend(i);
     }
     return std::move(svg_);
   }
@@ -169,18 +169,25 @@ class PlotDrawing {
          " fill=\"#8a6420\" font-size=\"11\"");
   }
 
-  void DrawSeries(const PlotSeries& series, const char* color) {
+  static const char* ColorOf(size_t series) { return kColors[series % kColors.size()]; }
+  // Where colours come again, lines are dashed.
+  static std::string StrokeOf(size_t series) {
+    return absl::StrCat("stroke=\"", ColorOf(series), "\"",
+                        series < kColors.size() ? "" : " stroke-dasharray=\"6 3\"");
+  }
+
+  void DrawSeries(size_t index) {
     std::string run;
-    for (const auto& [x, y] : series.points) {
+    for (const auto& [x, y] : plot_.series[index].points) {
       if (!IsDrawable(x, plot_.x) || !IsDrawable(y, plot_.y) || !Inside(x, y)) {
-        DrawRun(run, color);
+        DrawRun(run, index);
         continue;
       }
       absl::StrAppendFormat(&run, "%.1f,%.1f ", X(x), Y(y));
       absl::StrAppendFormat(&svg_, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.5\" fill=\"%s\"/>\n",
-                            X(x), Y(y), color);
+                            X(x), Y(y), ColorOf(index));
     }
-    DrawRun(run, color);
+    DrawRun(run, index);
   }
 
   // Given bounds may be narrower than the data.
@@ -188,19 +195,19 @@ class PlotDrawing {
     return x >= x_.min && x <= x_.max && y >= y_.min && y <= y_.max;
   }
 
-  void DrawRun(std::string& run, const char* color) {
+  void DrawRun(std::string& run, size_t series) {
     if (run.empty()) return;
-    absl::StrAppend(&svg_, "<polyline fill=\"none\" stroke-width=\"1.8\" stroke=\"", color,
-                    "\" points=\"", run, "\"/>\n");
+    absl::StrAppend(&svg_, "<polyline fill=\"none\" stroke-width=\"1.8\" ", StrokeOf(series),
+                    " points=\"", run, "\"/>\n");
     run.clear();
   }
 
-  void DrawLegend(size_t index, const std::string& name, const char* color) {
+  void DrawLegend(size_t index) {
     const double text = kLeft + kInnerWidth + kLegendLeft, x = text - 26;
     const double y = top_ + 10 + kLegendLine * static_cast<double>(index);
-    const std::string stroke = absl::StrCat("stroke-width=\"3\" stroke=\"", color, "\"");
+    const std::string stroke = absl::StrCat("stroke-width=\"3\" ", StrokeOf(index));
     Line(x, y, x + 20, y, stroke.c_str());
-    Text(text, y + 4, "start", name);
+    Text(text, y + 4, "start", plot_.series[index].name);
   }
 
   const Plot& plot_;
