@@ -28,6 +28,8 @@ PATIENCE_S = 120
 
 _stubs = tempfile.TemporaryDirectory()
 STUBS = _stubs.name
+# Whoever is told no folder keeps what it keeps with the stubs.
+os.environ["XDG_STATE_HOME"] = str(STUBS)
 subprocess.run(
     ["protoc", f"-I{PROJECT / 'proto'}", f"--python_out={STUBS}", f"--grpc_out={STUBS}",
      "--plugin=protoc-gen-grpc=/usr/bin/grpc_python_plugin",
