@@ -10,11 +10,10 @@
 #include "client/command/command.h"
 #include "client/command/flags.h"
 #include "client/command/output.h"
-#include "client/command/policy_report.h"
+#include "client/command/policy_contest.h"
+#include "client/command/policy_corpus.h"
 #include "client/command/progress_bar.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
-#include "core/audit/flight_corpus.h"
 #include "core/io/atomic_file.h"
 #include "core/io/trace_file.h"
 
@@ -22,57 +21,14 @@ namespace linetree {
 namespace {
 
 struct BenchPoliciesFlags {
-  std::vector<std::string> scenes = {"scenes/room.textproto", "scenes/spd/balls_3.nff",
-                                     "scenes/spd/tree_8.nff", "scenes/many_lights.textproto"};
-  std::vector<FlightPattern> patterns;
-  int frames = 160;
+  PolicyCorpus corpus{.scenes = {"scenes/room.textproto", "scenes/spd/balls_3.nff",
+                                 "scenes/spd/tree_8.nff", "scenes/many_lights.textproto"},
+                      .patterns = AllFlightPatterns()};
   SizeFlags size{192, 192};
-  double epsilon = 0.1;
-  uint64_t seed = 1;
-  int threads = 0;
   std::string traces;  // folder
   std::string json, svg;
   bool quiet = false;
 };
-
-// Goals: the best policy's cost by the bound, and ours by LRU's.
-constexpr double kMostRegret = 1.15;
-constexpr double kMostByLru = 1.05;
-constexpr char kOurs[] = "reuse";
-constexpr char kLru[] = "lru";
-
-struct NamedTrace {
-  std::string name;
-  Trace trace;
-};
-
-absl::StatusOr<std::vector<NamedTrace>> Record(const BenchPoliciesFlags& flags,
-                                               const std::function<void(double)>& progress) {
-  WorkerPool pool(flags.threads);
-  std::vector<NamedTrace> all;
-  const auto count = static_cast<double>(flags.scenes.size() * flags.patterns.size());
-  for (const std::string& path : flags.scenes) {
-    const absl::StatusOr<SceneFile> file = ReadSceneFileChecked(path);
-    if (!file.ok()) return file.status();
-    const Camera* camera = file->scene->FindCamera("");
-    if (camera == nullptr) {
-      return absl::InvalidArgumentError(absl::StrCat(path, ": expected a scene with a camera"));
-    }
-    for (const FlightPattern pattern : flags.patterns) {
-      FlightTraceOptions options{flags.size.width, flags.size.height, {}};
-      options.options.max_relative_error = flags.epsilon;
-      const auto views = FlightViews(*file->scene, *camera, pattern, flags.frames, flags.seed);
-      auto trace = RecordFlight(file->scene, views, options, pool, [&](double share) {
-        progress((static_cast<double>(all.size()) + share) / count);
-      });
-      if (!trace.ok()) return trace.status();
-      const std::string name = absl::StrCat(
-          file->name, " ", std::string(kFlightPatternNames[static_cast<size_t>(pattern)]));
-      all.push_back({name, *std::move(trace)});
-    }
-  }
-  return all;
-}
 
 absl::Status SaveTraces(const std::vector<NamedTrace>& traces, const std::string& folder) {
   for (const auto& [name, trace] : traces) {
@@ -84,55 +40,18 @@ absl::Status SaveTraces(const std::vector<NamedTrace>& traces, const std::string
   return absl::OkStatus();
 }
 
-// Of one trace under one budget.
-struct Contest {
-  std::string trace, budget;
-  const PolicyRow* best = nullptr;  // Belady left out
-  double ours = 1, lru = 1;         // costs by the bound
-};
-
-std::vector<Contest> ContestsOf(const std::vector<PolicyRow>& rows) {
-  std::map<std::pair<std::string, std::string>, Contest> all;
-  for (const PolicyRow& row : rows) {
-    Contest& contest = all[{row.trace, row.budget}];
-    contest.trace = row.trace;
-    contest.budget = row.budget;
-    if (row.policy == kOurs) contest.ours = row.Regret();
-    if (row.policy == kLru) contest.lru = row.Regret();
-    if (row.policy == kBelady) continue;
-    if (contest.best == nullptr || row.Regret() < contest.best->Regret()) contest.best = &row;
-  }
-  std::vector<Contest> contests;
-  for (const auto& [key, contest] : all) contests.push_back(contest);
-  return contests;
-}
-
 void PrintPolicies(const std::vector<PolicyRow>& rows) {
-  struct Sums {
-    double cost = 0, least = 0, worst = 0;
-  };
-  std::map<std::string, std::map<std::string, Sums>> policies;  // by policy and budget
-  std::vector<std::string> budgets;
-  for (const PolicyRow& row : rows) {
-    Sums& sums = policies[row.policy][row.budget];
-    sums.cost += row.result.rebuild_ns;
-    sums.least += row.least_rebuild_ns;
-    sums.worst = std::max(sums.worst, row.Regret());
-    if (std::find(budgets.begin(), budgets.end(), row.budget) == budgets.end()) {
-      budgets.push_back(row.budget);
-    }
-  }
+  const auto policies = SumUp(rows);
   std::vector<TableColumn> columns = {{"policy"}};
-  for (const std::string& budget : budgets) {
-    columns.push_back({budget + ": all", Align::kRight});
+  for (const auto& [share, sums] : policies.begin()->second) {
+    columns.push_back({absl::StrFormat("%g%%: all", 100 * share), Align::kRight});
     columns.push_back({"worst", Align::kRight});
   }
   Table table(std::move(columns));
-  for (const auto& [policy, by_budget] : policies) {
+  for (const auto& [policy, by_share] : policies) {
     std::vector<std::string> cells = {policy};
-    for (const std::string& budget : budgets) {
-      const Sums& sums = by_budget.at(budget);
-      cells.push_back(absl::StrFormat("%.3f", sums.least > 0 ? sums.cost / sums.least : 1));
+    for (const auto& [share, sums] : by_share) {
+      cells.push_back(absl::StrFormat("%.3f", sums.Regret()));
       cells.push_back(absl::StrFormat("%.3f", sums.worst));
     }
     table.AddRow(std::move(cells));
@@ -141,7 +60,7 @@ void PrintPolicies(const std::vector<PolicyRow>& rows) {
             << table.ToString() << "\n";
 }
 
-nlohmann::json PrintContests(const std::vector<Contest>& contests) {
+nlohmann::json PrintContests(const std::vector<PolicyContest>& contests) {
   Table table({{"trace"},
                {"budget", Align::kRight},
                {"best"},
@@ -150,15 +69,11 @@ nlohmann::json PrintContests(const std::vector<Contest>& contests) {
                {"lru / bound", Align::kRight},
                {"reuse / lru", Align::kRight}});
   nlohmann::json json = nlohmann::json::array();
-  size_t near = 0, not_worse = 0;
-  for (const Contest& contest : contests) {
-    const double by_lru = contest.ours / contest.lru;
-    near += contest.best->Regret() <= kMostRegret ? 1 : 0;
-    not_worse += by_lru <= kMostByLru ? 1 : 0;
+  for (const PolicyContest& contest : contests) {
     table.AddRow({contest.trace, contest.budget, contest.best->policy,
                   absl::StrFormat("%.3f", contest.best->Regret()),
                   absl::StrFormat("%.3f", contest.ours), absl::StrFormat("%.3f", contest.lru),
-                  absl::StrFormat("%.3f", by_lru)});
+                  absl::StrFormat("%.3f", contest.ByLru())});
     json.push_back({{"trace", contest.trace},
                     {"budget", contest.budget},
                     {"best", contest.best->policy},
@@ -166,10 +81,11 @@ nlohmann::json PrintContests(const std::vector<Contest>& contests) {
                     {"reuse_regret", contest.ours},
                     {"lru_regret", contest.lru}});
   }
+  const ContestGoals goals = CountGoals(contests);
   std::cout << table.ToString() << "\n"
             << absl::StrFormat("To reach: the best policy at most %.2f x the bound: %d of %d. ",
-                               kMostRegret, near, contests.size())
-            << absl::StrFormat("reuse at most %.2f x LRU: %d of %d.\n", kMostByLru, not_worse,
+                               kMostRegret, goals.near, contests.size())
+            << absl::StrFormat("reuse at most %.2f x LRU: %d of %d.\n", kMostByLru, goals.not_worse,
                                contests.size());
   return json;
 }
@@ -179,7 +95,10 @@ absl::StatusOr<int> BenchPolicies(const BenchPoliciesFlags& flags) {
   std::vector<PolicyRow> rows;
   {
     ProgressBar bar(!flags.quiet && IsTerminal(), "bench policies");
-    const auto traces = Record(flags, [&](double share) { bar.Show(0.8 * share); });
+    PolicyCorpus corpus = flags.corpus;
+    corpus.width = flags.size.width;
+    corpus.height = flags.size.height;
+    const auto traces = RecordCorpus(corpus, [&](double share) { bar.Show(0.8 * share); });
     if (!traces.ok()) return traces.status();
     if (!flags.traces.empty()) {
       if (auto s = SaveTraces(*traces, flags.traces); !s.ok()) return s;
@@ -212,32 +131,32 @@ void AddPatterns(CLI::App& app, BenchPoliciesFlags& flags) {
   for (size_t i = 0; i < kFlightPatternNames.size(); ++i) {
     const auto pattern = static_cast<FlightPattern>(i);
     names.emplace(kFlightPatternNames[i], pattern);
-    flags.patterns.push_back(pattern);
   }
-  app.add_option("--flight", flags.patterns, "What clients do; may be given again; all by default")
+  app.add_option("--flight", flags.corpus.patterns,
+                 "What clients do; may be given again; all by default")
       ->type_name("PATTERN")
       ->transform(CLI::CheckedTransformer(names, CLI::ignore_case))
       ->default_str("");
 }
 
 void AddPoliciesFlags(CLI::App& app, BenchPoliciesFlags& flags) {
-  app.add_option("--scene", flags.scenes, "Scene file; may be given again")
+  app.add_option("--scene", flags.corpus.scenes, "Scene file; may be given again")
       ->type_name("FILE")
       ->capture_default_str();
   AddPatterns(app, flags);
-  app.add_option("--frames", flags.frames, "Of each flight, all clients together")
+  app.add_option("--frames", flags.corpus.frames, "Of each flight, all clients together")
       ->type_name("N")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   AddSizeFlags(app, flags.size);
-  app.add_option("--epsilon", flags.epsilon, "What cached answers promise")
+  app.add_option("--epsilon", flags.corpus.epsilon, "What cached answers promise")
       ->type_name("E")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--seed", flags.seed, "Of where flights lead")
+  app.add_option("--seed", flags.corpus.seed, "Of where flights lead")
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--threads", flags.threads, "0: all hardware threads")
+  app.add_option("--threads", flags.corpus.threads, "0: all hardware threads")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -130,6 +130,8 @@ nlohmann::json PolicyJson(const std::vector<PolicyRow>& rows) {
                     {"budget_bytes", row.budget_bytes},
                     {"requests", row.result.requests},
                     {"hits", row.result.hits},
+                    {"requested_bytes", row.result.requested_bytes},
+                    {"hit_bytes", row.result.hit_bytes},
                     {"hit_ratio", row.result.HitRatio()},
                     {"byte_hit_ratio", row.result.ByteHitRatio()},
                     {"evictions", row.result.evictions},
@@ -138,6 +140,23 @@ nlohmann::json PolicyJson(const std::vector<PolicyRow>& rows) {
                     {"regret", row.Regret()}});
   }
   return json;
+}
+
+std::vector<PolicyRow> PolicyRows(const nlohmann::json& json) {
+  std::vector<PolicyRow> rows;
+  for (const nlohmann::json& of : json) {
+    PolicyRow row{of.at("trace"),           of.at("policy"),       of.at("budget"),
+                  of.at("share"),           of.at("budget_bytes"), {},
+                  of.at("least_rebuild_ns")};
+    row.result.requests = of.at("requests");
+    row.result.hits = of.at("hits");
+    row.result.evictions = of.at("evictions");
+    row.result.requested_bytes = of.at("requested_bytes");
+    row.result.hit_bytes = of.at("hit_bytes");
+    row.result.rebuild_ns = of.at("rebuild_ns");
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 std::vector<Plot> PolicyPlots(const std::vector<PolicyRow>& rows) {

@@ -47,6 +47,7 @@ absl::StatusOr<std::vector<PolicyRow>> SimulateAll(const std::string& name, cons
 
 std::string PolicyTable(const std::vector<PolicyRow>& rows);
 nlohmann::json PolicyJson(const std::vector<PolicyRow>& rows);
+std::vector<PolicyRow> PolicyRows(const nlohmann::json& json);  // what PolicyJson has written
 // Hit ratio and rebuild cost over the budget, a series for each policy, for every trace.
 std::vector<Plot> PolicyPlots(const std::vector<PolicyRow>& rows);
 

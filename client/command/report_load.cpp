@@ -3,11 +3,10 @@
 #include "absl/strings/str_format.h"
 #include "client/command/load_run.h"
 #include "client/command/local_client.h"
+#include "client/command/report_flight.h"
 #include "client/command/report_sections.h"
 #include "client/command/scene_files.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
-#include "core/io/camera_path.h"
 
 namespace linetree {
 namespace {
@@ -26,18 +25,15 @@ struct Setting {
 };
 
 absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
-  const auto file = ReadSceneFileChecked(setting.scene_file);
-  if (!file.ok()) return file.status();
-  const auto path = LoadCameraPath(setting.path_file);
-  if (!path.ok()) return path.status();
-  const auto cameras = SampleCameraPath(*path, path->frames);
-  if (!cameras.ok()) return cameras.status();
+  const auto flight = LoadFlight(setting.scene_file, setting.path_file);
+  if (!flight.ok()) return flight.status();
+  const auto& [file, cameras] = *flight;
   LocalClient client(setting.threads, CacheOptions{}.memory_bytes);
-  if (auto info = SendScene(client, *file, file->name, false); !info.ok()) return info.status();
-  LoadPlan plan{.scene = file->name};
+  if (auto info = SendScene(client, file, file.name, false); !info.ok()) return info.status();
+  LoadPlan plan{.scene = file.name};
   plan.frame.width = plan.frame.height = setting.side;
-  plan.paths = {*cameras};
-  plan.pieces = PlanPieces(kClients, {cameras->size()}, std::nullopt);
+  plan.paths = {cameras};
+  plan.pieces = PlanPieces(kClients, {cameras.size()}, std::nullopt);
   plan.frames_each = setting.frames_each;
   plan.warm_up_frames = setting.frames_each;
   const std::vector<Client*> clients(kClients, &client);

@@ -2,11 +2,9 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/load_run.h"
 #include "client/command/local_client.h"
+#include "client/command/report_flight.h"
 #include "client/command/report_sections.h"
-#include "client/command/scene_files.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
-#include "core/io/camera_path.h"
 
 namespace linetree {
 namespace {
@@ -15,22 +13,11 @@ using Json = nlohmann::json;
 
 constexpr size_t kLaps = 2;
 
-struct Flight {
-  const char* scene;
-  const char* path;
-};
-constexpr Flight kFlights[] = {{"room.textproto", "room_walk"},
-                               {"face.textproto", "face_walk"},
-                               {"glass.textproto", "glass_orbit"},
-                               {"spd/balls_3.nff", "balls_orbit"},
-                               {"spd/tree_8.nff", "tree_orbit"}};
-
-std::string SceneOf(const std::string& folder, const Flight& flight) {
-  return absl::StrCat(folder, "/", flight.scene);
-}
-std::string PathOf(const std::string& folder, const Flight& flight) {
-  return absl::StrCat(folder, "/paths/", flight.path, ".textproto");
-}
+constexpr ReportFlight kFlights[] = {{"room.textproto", "room_walk"},
+                                     {"face.textproto", "face_walk"},
+                                     {"glass.textproto", "glass_orbit"},
+                                     {"spd/balls_3.nff", "balls_orbit"},
+                                     {"spd/tree_8.nff", "tree_orbit"}};
 
 Json PartsJson(const v1::GetStatsReply& stats) {
   Json parts = Json::array();
@@ -41,31 +28,23 @@ Json PartsJson(const v1::GetStatsReply& stats) {
 }
 
 // One client, lap after lap.
-absl::StatusOr<Json> Fly(const std::string& folder, const Flight& flight, int side, int threads,
+absl::StatusOr<Json> Fly(const LoadedFlight& flight, int side, int threads,
                          const Progress& progress) {
-  const auto file = ReadSceneFileChecked(SceneOf(folder, flight));
-  if (!file.ok()) return file.status();
-  const auto path = LoadCameraPath(PathOf(folder, flight));
-  if (!path.ok()) return path.status();
-  auto cameras = SampleCameraPath(*path, path->frames);
-  if (!cameras.ok()) return cameras.status();
+  const auto& [file, cameras] = flight;
   LocalClient client(threads, CacheOptions{}.memory_bytes);
-  if (auto info = SendScene(client, *file, file->name, false); !info.ok()) return info.status();
-  LoadPlan plan{.scene = file->name};
+  if (auto info = SendScene(client, file, file.name, false); !info.ok()) return info.status();
+  LoadPlan plan{.scene = file.name};
   plan.frame.width = plan.frame.height = side;
-  plan.pieces = PlanPieces(1, {cameras->size()}, std::nullopt);
-  plan.frames_each = kLaps * cameras->size();
-  plan.paths = {*std::move(cameras)};
+  plan.pieces = PlanPieces(1, {cameras.size()}, std::nullopt);
+  plan.frames_each = kLaps * cameras.size();
+  plan.paths = {cameras};
   const auto phases = RunLoad(plan, {&client}, progress);
   if (!phases.ok()) return phases.status();
   Json bytes = Json::array();
   for (const LoadSample& sample : phases->back().samples) bytes.push_back(sample.stats.cache_bytes);
-  const auto stats = client.GetStats(file->name);
+  const auto stats = client.GetStats(file.name);
   if (!stats.ok()) return stats.status();
-  return Json{{"scene", file->name},
-              {"path", flight.path},
-              {"cache_bytes", std::move(bytes)},
-              {"memory", PartsJson(*stats)}};
+  return Json{{"cache_bytes", std::move(bytes)}, {"memory", PartsJson(*stats)}};
 }
 
 std::vector<Plot> Plots(const Json& result) {
@@ -107,23 +86,12 @@ ReportSection MemorySection(const ReportOptions& options) {
       "--frames FRAMES --width ",
       side, " --height ", side, " --csv FILE");
   section.parameters = {{"side", side}, {"laps", kLaps}};
-  for (const Flight& flight : kFlights) {
-    for (const std::string& file : {SceneOf(folder, flight), PathOf(folder, flight)}) {
-      section.parameters["files"][file] = HashOfFile(file);
-    }
-  }
-  section.run = [folder, side,
-                 threads = options.threads](const Progress& progress) -> absl::StatusOr<Json> {
-    Json flights = Json::array();
-    for (const Flight& flight : kFlights) {
-      const auto part = [&](double share) {
-        progress((static_cast<double>(flights.size()) + share) / std::size(kFlights));
-      };
-      auto json = Fly(folder, flight, side, threads, part);
-      if (!json.ok()) return json.status();
-      flights.push_back(*std::move(json));
-    }
-    return Json{{"flights", std::move(flights)}};
+  AddFlightFiles(folder, kFlights, section);
+  section.run = [folder, side, threads = options.threads](const Progress& progress) {
+    return FlyAll(folder, kFlights, progress,
+                  [&](const LoadedFlight& flight, const Progress& part) {
+                    return Fly(flight, side, threads, part);
+                  });
   };
   section.plots = Plots;
   section.tables = Tables;

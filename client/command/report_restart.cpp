@@ -6,11 +6,9 @@
 #include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/command/report_flight.h"
 #include "client/command/report_sections.h"
-#include "client/command/scene_files.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
-#include "core/io/camera_path.h"
 #include "core/io/stats_json.h"
 #include "core/store/cell_store.h"
 
@@ -24,21 +22,10 @@ constexpr size_t kLaps = 2;
 constexpr double kWantedShare = 0.9;
 constexpr int kWantedFrames = 1;
 
-struct Flight {
-  const char* scene;
-  const char* path;
-};
-constexpr Flight kFlights[] = {{"room.textproto", "room_walk"},
-                               {"spd/balls_4.nff", "balls_orbit"},
-                               {"glass.textproto", "glass_orbit"},
-                               {"spd/tree_8.nff", "tree_orbit"}};
-
-std::string SceneOf(const std::string& folder, const Flight& flight) {
-  return absl::StrCat(folder, "/", flight.scene);
-}
-std::string PathOf(const std::string& folder, const Flight& flight) {
-  return absl::StrCat(folder, "/paths/", flight.path, ".textproto");
-}
+constexpr ReportFlight kFlights[] = {{"room.textproto", "room_walk"},
+                                     {"spd/balls_4.nff", "balls_orbit"},
+                                     {"glass.textproto", "glass_orbit"},
+                                     {"spd/tree_8.nff", "tree_orbit"}};
 
 // A host whose cells are kept.
 struct KeptHost {
@@ -65,40 +52,34 @@ absl::StatusOr<Json> HitRates(SceneHost& host, const std::vector<Camera>& camera
   return rates;
 }
 
-absl::StatusOr<Json> Restart(const std::string& folder, const Flight& flight, int side,
-                             WorkerPool& pool, const Progress& progress) {
-  const auto file = ReadSceneFileChecked(SceneOf(folder, flight));
-  if (!file.ok()) return file.status();
-  const auto path = LoadCameraPath(PathOf(folder, flight));
-  if (!path.ok()) return path.status();
-  const auto cameras = SampleCameraPath(*path, path->frames);
-  if (!cameras.ok()) return cameras.status();
+absl::StatusOr<Json> Restart(const LoadedFlight& flight, int side, WorkerPool& pool,
+                             const Progress& progress) {
+  const SceneFile& file = flight.file;
+  const std::vector<Camera>& cameras = flight.cameras;
   const auto data = std::filesystem::temp_directory_path() /
-                    absl::StrCat("linetree-restart-", getpid(), "-", file->name);
+                    absl::StrCat("linetree-restart-", getpid(), "-", file.name);
   const absl::Cleanup remove = [&] {
     std::error_code ignored;
     std::filesystem::remove_all(data, ignored);
   };
   double frames = 0;
-  const auto done = [&] {
-    progress(++frames / static_cast<double>((kLaps + 1) * cameras->size()));
-  };
+  const auto done = [&] { progress(++frames / static_cast<double>((kLaps + 1) * cameras.size())); };
   const auto open = [&] { return CellStore::Open({.folder = data.string()}, [](const auto&) {}); };
-  Json json = {{"scene", file->name}, {"path", flight.path}};
+  Json json;
   {
     auto store = open();
     if (!store.ok()) return store.status();
-    KeptHost kept(**store, file->name, file->scene);
+    KeptHost kept(**store, file.name, file.scene);
     for (size_t lap = 0; lap < kLaps; ++lap) {
-      auto rates = HitRates(kept.host, *cameras, side, pool, done);
+      auto rates = HitRates(kept.host, cameras, side, pool, done);
       if (!rates.ok()) return rates.status();
       json[lap == 0 ? "cold" : "warm"] = *std::move(rates);
     }
   }
   auto store = open();
   if (!store.ok()) return store.status();
-  KeptHost kept(**store, file->name, file->scene);
-  auto rates = HitRates(kept.host, *cameras, side, pool, done);
+  KeptHost kept(**store, file.name, file.scene);
+  auto rates = HitRates(kept.host, cameras, side, pool, done);
   if (!rates.ok()) return rates.status();
   json["restarted"] = *std::move(rates);
   const StoreCounts counts = kept.pages->counts();
@@ -175,24 +156,13 @@ ReportSection RestartSection(const ReportOptions& options) {
       "left on the disk. Hit rates are shares of the pixels that see something.");
   section.command = "linetree bench report --section restart -o DIR";
   section.parameters = {{"side", side}, {"laps", kLaps}};
-  for (const Flight& flight : kFlights) {
-    for (const std::string& file : {SceneOf(folder, flight), PathOf(folder, flight)}) {
-      section.parameters["files"][file] = HashOfFile(file);
-    }
-  }
-  section.run = [folder, side,
-                 threads = options.threads](const Progress& progress) -> absl::StatusOr<Json> {
+  AddFlightFiles(folder, kFlights, section);
+  section.run = [folder, side, threads = options.threads](const Progress& progress) {
     WorkerPool pool(threads);
-    Json flights = Json::array();
-    for (const Flight& flight : kFlights) {
-      const auto part = [&](double share) {
-        progress((static_cast<double>(flights.size()) + share) / std::size(kFlights));
-      };
-      auto json = Restart(folder, flight, side, pool, part);
-      if (!json.ok()) return json.status();
-      flights.push_back(*std::move(json));
-    }
-    return Json{{"flights", std::move(flights)}};
+    return FlyAll(folder, kFlights, progress,
+                  [&](const LoadedFlight& flight, const Progress& part) {
+                    return Restart(flight, side, pool, part);
+                  });
   };
   section.plots = Plots;
   section.tables = Tables;

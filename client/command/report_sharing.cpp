@@ -4,11 +4,10 @@
 #include "client/command/load_goals.h"
 #include "client/command/load_run.h"
 #include "client/command/local_client.h"
+#include "client/command/report_flight.h"
 #include "client/command/report_sections.h"
 #include "client/command/scene_files.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
-#include "core/io/camera_path.h"
 
 namespace linetree {
 namespace {
@@ -64,21 +63,18 @@ absl::StatusOr<uint64_t> BuildInTurn(const Setting& setting, const SceneFile& fi
 }
 
 absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
-  const auto file = ReadSceneFileChecked(setting.scene_file);
-  if (!file.ok()) return file.status();
-  const auto path = LoadCameraPath(setting.path_file);
-  if (!path.ok()) return path.status();
-  const auto cameras = SampleCameraPath(*path, setting.path_frames);
-  if (!cameras.ok()) return cameras.status();
+  const auto flight = LoadFlight(setting.scene_file, setting.path_file, setting.path_frames);
+  if (!flight.ok()) return flight.status();
+  const auto& [file, cameras] = *flight;
   Json runs = Json::array();
   for (const size_t clients : setting.clients) {
     const auto part = [&](double share) {
       progress((static_cast<double>(runs.size()) + share) /
                static_cast<double>(setting.clients.size()));
     };
-    const auto figures = FlyTogether(setting, *file, *cameras, clients, part);
+    const auto figures = FlyTogether(setting, file, cameras, clients, part);
     if (!figures.ok()) return figures.status();
-    const auto in_turn = BuildInTurn(setting, *file, *cameras, clients);
+    const auto in_turn = BuildInTurn(setting, file, cameras, clients);
     if (!in_turn.ok()) return in_turn.status();
     Json json = LoadJson(*figures);
     json["clients"] = clients;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
@@ -43,10 +44,14 @@ struct SceneSum {
 };
 using SceneSums = std::map<SceneVersion, SceneSum>;
 
-bool IsOdd(const PageKey& key, std::string_view bytes) {
+// Nothing where the page is odd, or not that of its key.
+std::optional<PageHead> HeadOf(const PageKey& key, std::string_view bytes) {
   const auto page = OpenPage(bytes);
-  return !page || page->head.scene != key.scene || page->head.algorithm != key.algorithm ||
-         page->head.number != key.number;
+  if (!page || page->head.scene != key.scene || page->head.algorithm != key.algorithm ||
+      page->head.number != key.number) {
+    return std::nullopt;
+  }
+  return page->head;
 }
 
 absl::StatusOr<std::unique_ptr<PageFile>> OpenFile(const StoreFlags& flags,
@@ -63,13 +68,13 @@ absl::StatusOr<SceneSums> Sum(const PageFile& file) {
     SceneSum& sum = sums[key.scene];
     ++sum.pages;
     sum.bytes += bytes.size();
-    if (IsOdd(key, bytes)) {
+    const auto head = HeadOf(key, bytes);
+    if (!head) {
       ++sum.odd_pages;
       return;
     }
-    const PageHead head = OpenPage(bytes)->head;
-    (head.kind == PageKind::kSurface ? sum.surface_cells : sum.path_cells) += head.cells;
-    if (head.algorithm != CellStore::Algorithm()) ++sum.other_pages;
+    (head->kind == PageKind::kSurface ? sum.surface_cells : sum.path_cells) += head->cells;
+    if (head->algorithm != CellStore::Algorithm()) ++sum.other_pages;
   });
   if (!status.ok()) return status;
   const auto notes = file.Notes();
@@ -136,7 +141,7 @@ absl::StatusOr<int> Verify(const StoreFlags& flags) {
   uint64_t pages = 0, odd = 0;
   const auto status = (*file)->ForEach([&](const PageKey& key, std::string_view bytes) {
     ++pages;
-    if (!IsOdd(key, bytes)) return;
+    if (HeadOf(key, bytes)) return;
     ++odd;
     std::cout << "page " << key.number << " of scene " << key.scene
               << ": expected the checksum and head that it was sealed with\n";
@@ -163,7 +168,7 @@ absl::StatusOr<int> Prune(const StoreFlags& flags) {
   const double oldest =
       static_cast<double>(absl::ToUnixSeconds(absl::Now())) - flags.older_than_days * 24 * 60 * 60;
   const auto goes = [&](const PageKey& key, std::string_view bytes) {
-    if (flags.all || IsOdd(key, bytes)) return true;
+    if (flags.all || !HeadOf(key, bytes)) return true;
     if (flags.others && key.algorithm != CellStore::Algorithm()) return true;
     const SceneSum& sum = sums->at(key.scene);
     if (flags.older_than_days >= 0 && static_cast<double>(sum.last_used) < oldest) return true;

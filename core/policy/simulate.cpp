@@ -4,39 +4,25 @@
 #include <memory>
 
 #include "absl/container/flat_hash_map.h"
+#include "core/policy/heap_policy.h"
 #include "core/policy/policies.h"
-#include "core/policy/victim_heap.h"
 
 namespace linetree {
 namespace {
 
 // Of equals, which are never used again, the one goes that has been so for longest.
-class Belady : public EvictionPolicy {
+class Belady : public HeapPolicy {
  public:
   // `next`: of the event that is being replayed.
   explicit Belady(const int64_t& next) : next_(next) {}
 
-  void Insert(const PolicyItem& item) override { Use(items_.Add(item)); }
-  void Change(const PolicyItem& item) override { items_[items_.At(item.id)].item = item; }
-  void Access(uint64_t id) override { Use(items_.At(id)); }
-  void Remove(uint64_t id) override {
-    const ItemSlot slot = items_.At(id);
-    heap_.Take(slot);
-    items_.Erase(slot);
-  }
-  void Evict(uint64_t id) override { Remove(id); }
-  uint64_t PickVictim() override { return items_[heap_.first()].item.id; }
-  uint64_t ByteSize() const override { return items_.ByteSize() + heap_.ByteSize(); }
-
  private:
-  void Use(ItemSlot slot) {
-    heap_.Set(slot, next_ == kNeverAgain ? -std::numeric_limits<double>::infinity()
-                                         : -static_cast<double>(next_));
+  double KeyOf(ItemTable::Entry&) override {
+    return next_ == kNeverAgain ? -std::numeric_limits<double>::infinity()
+                                : -static_cast<double>(next_);
   }
 
   const int64_t& next_;
-  ItemTable items_;
-  VictimHeap heap_;
 };
 
 class Replay {

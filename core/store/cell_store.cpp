@@ -40,7 +40,7 @@ CellStore::~CellStore() {
   }
   wake_.notify_all();
   writer_.join();
-  WriteGathered();
+  Flush();
 }
 
 std::shared_ptr<ScenePages> CellStore::Attach(const std::string& name,
@@ -83,14 +83,12 @@ void CellStore::Run() {
   while (!stops_) {
     wake_.wait_for(lock, options_.interval, [&] { return stops_; });
     lock.unlock();
-    WriteGathered();
+    Flush();
     lock.lock();
   }
 }
 
-void CellStore::Flush() { WriteGathered(); }
-
-void CellStore::WriteGathered() {
+void CellStore::Flush() {
   const std::lock_guard writing(write_mutex_);
   std::vector<std::shared_ptr<ScenePages>> scenes;
   std::vector<SceneNote> notes;

@@ -54,7 +54,6 @@ class CellStore {
  private:
   CellStore(const Options& options, std::unique_ptr<PageFile> file, Log log);
   void Run();
-  void WriteGathered();
   // Takes out what other programs have kept, and the scene that was used longest ago of those that
   // nobody has loaded. False where there is nothing of that kind.
   bool MakeRoom();

@@ -230,44 +230,46 @@ absl::Status PageFile::ForEach(const SceneVersion& scene, uint64_t algorithm,
 }
 absl::Status PageFile::ForEach(const Visit& visit) const { return ForEachFrom("", visit); }
 
-absl::Status PageFile::ForEachFrom(std::string_view prefix, const Visit& visit) const {
+template <class Fn>
+absl::Status PageFile::ForEachEntry(uint32_t database, std::string_view prefix, const char* what,
+                                    Fn&& visit) const {
   const Transaction txn(env_, MDB_RDONLY);
-  if (txn.error() != 0) return Failed(folder_, "reading pages", txn.error());
+  if (txn.error() != 0) return Failed(folder_, what, txn.error());
   MDB_cursor* cursor = nullptr;
-  int error = mdb_cursor_open(txn.get(), pages_, &cursor);
-  if (error != 0) return Failed(folder_, "reading pages", error);
+  int error = mdb_cursor_open(txn.get(), database, &cursor);
+  if (error != 0) return Failed(folder_, what, error);
   const absl::Cleanup close = [&] { mdb_cursor_close(cursor); };
   MDB_val key = ValueOf(prefix), value{};
   for (error = mdb_cursor_get(cursor, &key, &value, prefix.empty() ? MDB_FIRST : MDB_SET_RANGE);
        error == 0; error = mdb_cursor_get(cursor, &key, &value, MDB_NEXT)) {
     if (BytesOf(key).substr(0, prefix.size()) != prefix) break;
-    PageKey page;
-    if (ParseKey(BytesOf(key), page)) visit(page, BytesOf(value));
+    visit(BytesOf(key), BytesOf(value));
   }
   if (error == 0 || error == MDB_NOTFOUND) return absl::OkStatus();
-  return Failed(folder_, "reading pages", error);
+  return Failed(folder_, what, error);
+}
+
+absl::Status PageFile::ForEachFrom(std::string_view prefix, const Visit& visit) const {
+  return ForEachEntry(pages_, prefix, "reading pages",
+                      [&](std::string_view key, std::string_view value) {
+                        PageKey page;
+                        if (ParseKey(key, page)) visit(page, value);
+                      });
 }
 
 absl::StatusOr<std::vector<SceneNote>> PageFile::Notes() const {
-  const Transaction txn(env_, MDB_RDONLY);
-  if (txn.error() != 0) return Failed(folder_, "reading notes", txn.error());
-  MDB_cursor* cursor = nullptr;
-  int error = mdb_cursor_open(txn.get(), notes_, &cursor);
-  if (error != 0) return Failed(folder_, "reading notes", error);
-  const absl::Cleanup close = [&] { mdb_cursor_close(cursor); };
   std::vector<SceneNote> notes;
-  MDB_val key{}, value{};
-  for (error = mdb_cursor_get(cursor, &key, &value, MDB_FIRST); error == 0;
-       error = mdb_cursor_get(cursor, &key, &value, MDB_NEXT)) {
-    ByteReader in(BytesOf(value));
-    SceneNote note;
-    note.scene = std::string(BytesOf(key));
-    note.last_used = in.Get<int64_t>();
-    if (!in.ok()) continue;
-    note.name = std::string(BytesOf(value).substr(sizeof(int64_t)));
-    notes.push_back(std::move(note));
-  }
-  if (error != MDB_NOTFOUND) return Failed(folder_, "reading notes", error);
+  const auto status =
+      ForEachEntry(notes_, "", "reading notes", [&](std::string_view key, std::string_view value) {
+        ByteReader in(value);
+        SceneNote note;
+        note.scene = std::string(key);
+        note.last_used = in.Get<int64_t>();
+        if (!in.ok()) return;
+        note.name = std::string(value.substr(sizeof(int64_t)));
+        notes.push_back(std::move(note));
+      });
+  if (!status.ok()) return status;
   return notes;
 }
 
@@ -315,7 +317,6 @@ int PageFile::AgeFreePages() {
 
 PageFile::Sizes PageFile::SizesNow() const {
   Sizes sizes;
-  sizes.max_bytes = max_;
   std::error_code error;
   const auto bytes = std::filesystem::file_size(folder_ + "/data.mdb", error);
   if (!error) sizes.file_bytes = bytes;

@@ -73,7 +73,6 @@ class PageFile {
   struct Sizes {
     uint64_t file_bytes = 0;  // of the file, which does not shrink: what is free is used again
     uint64_t used_bytes = 0;
-    uint64_t max_bytes = 0;
   };
   Sizes SizesNow() const;
   const std::string& folder() const { return folder_; }
@@ -86,6 +85,10 @@ class PageFile {
   bool IsWritten() const;
   int AgeFreePages();
   absl::Status ForEachFrom(std::string_view prefix, const Visit& visit) const;
+  // visit(key, value) for what keys with the prefix name; `what` is said where that fails.
+  template <class Fn>
+  absl::Status ForEachEntry(uint32_t database, std::string_view prefix, const char* what,
+                            Fn&& visit) const;
 
   const std::string folder_;
   const uint64_t max_;

@@ -35,28 +35,32 @@ class CellCodec : public testing::TestWithParam<uint64_t> {
   WorkerPool pool_;
 };
 
+// `copy` reads a cell and writes it.
+template <class Copy>
+void ExpectSameAgain(const std::string& bytes, Copy&& copy) {
+  ByteReader in(bytes);
+  std::string again;
+  ByteWriter out(again);
+  copy(in, out);
+  EXPECT_TRUE(in.ok());
+  EXPECT_EQ(in.left(), 0U);
+  EXPECT_EQ(again, bytes);
+}
+
 TEST_P(CellCodec, BringsBackWhatWasWritten) {
   ASSERT_GT(recorder_->surface_cells.size(), 50U);
   ASSERT_GT(recorder_->path_cells.size(), 10U);
   for (const std::string& bytes : recorder_->surface_cells) {
-    ByteReader in(bytes);
-    const KeptSurfaceCell cell = DecodeSurfaceCell(*scene_, in);
-    ASSERT_TRUE(in.ok());
-    EXPECT_EQ(in.left(), 0U);
-    std::string again;
-    ByteWriter out(again);
-    Encode(cell.place, *cell.lights, out);
-    EXPECT_EQ(again, bytes);
+    ExpectSameAgain(bytes, [&](ByteReader& in, ByteWriter& out) {
+      const KeptSurfaceCell cell = DecodeSurfaceCell(*scene_, in);
+      if (in.ok()) Encode(cell.place, *cell.lights, out);
+    });
   }
   for (const std::string& bytes : recorder_->path_cells) {
-    ByteReader in(bytes);
-    const KeptPathCell cell = DecodePathCell(*scene_, in);
-    ASSERT_TRUE(in.ok());
-    EXPECT_EQ(in.left(), 0U);
-    std::string again;
-    ByteWriter out(again);
-    Encode(cell.place, *cell.paths, out);
-    EXPECT_EQ(again, bytes);
+    ExpectSameAgain(bytes, [&](ByteReader& in, ByteWriter& out) {
+      const KeptPathCell cell = DecodePathCell(*scene_, in);
+      if (in.ok()) Encode(cell.place, *cell.paths, out);
+    });
   }
 }
 

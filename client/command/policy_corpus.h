@@ -1,0 +1,34 @@
+// The corpus that policies are compared on: flights through scenes, recorded in this process.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/audit/flight_corpus.h"
+
+namespace linetree {
+
+struct PolicyCorpus {
+  std::vector<std::string> scenes;  // files
+  std::vector<FlightPattern> patterns;
+  int frames = 160;  // of each flight, all clients together
+  int width = 192, height = 192;
+  double epsilon = 0.1;
+  uint64_t seed = 1;
+  int threads = 0;
+};
+
+struct NamedTrace {
+  std::string name;  // scene and pattern
+  Trace trace;
+};
+
+std::vector<FlightPattern> AllFlightPatterns();
+
+// `progress` gets shares in [0, 1].
+absl::StatusOr<std::vector<NamedTrace>> RecordCorpus(const PolicyCorpus& corpus,
+                                                     const std::function<void(double)>& progress);
+
+}  // namespace linetree
