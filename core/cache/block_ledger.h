@@ -6,19 +6,16 @@
 // its bytes count in the budget, of which it never takes more than half: in so small a one there is
 // no policy.
 //
-// Thread safety: as the store's, but for readers: its owner lets nobody else change the store
-// meanwhile. What readers may see is changed under the lock that Evict is given.
+// Thread safety: one thread at a time, which is then the one that evicts; readers and builders of
+// the store may go on.
 #pragma once
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
-#include <shared_mutex>
 #include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
-#include "absl/container/flat_hash_set.h"
 #include "core/cache/block_id.h"
 #include "core/cache/build_costs.h"
 #include "core/cache/tree_store.h"
@@ -81,24 +78,17 @@ class BlockLedger {
   }
 
   // Until store and ledger hold at most `target` bytes. What was used at `pinned` or later stays as
-  // long as there is anything else.
-  void Evict(Store& store, uint64_t target, uint32_t pinned, std::shared_mutex& mutex) {
+  // long as there is anything else, what builders own in any case.
+  void Evict(Store& store, uint64_t target, uint32_t pinned) {
     if (store.byte_size() + ByteSize() <= target) return;
     if (!policy_ && !policy_name_.empty()) Start(store, target);
-    size_t spared = 0;
-    while (policy_ && store.byte_size() + ByteSize() > target && !held_.empty()) {
-      const uint64_t room = target - std::min(target, ByteSize());
-      const std::vector<Block> victims = Choose(store, room, pinned, spared);
-      typename Store::Removed removed;  // destroyed without the lock
-      const std::unique_lock lock(mutex);
-      for (const Block& victim : victims) {
-        victim.parent != nullptr ? store.TakeChildren(*victim.parent, removed)
-                                 : store.TakeTree(victim.object, removed);
-      }
+    if (policy_) {
+      typename Store::Removed removed;
+      TakeVictims(store, target, pinned, removed);
+      store.Dispose(removed);
     }
     if (store.byte_size() + ByteSize() <= target) return;
     Reset();
-    const std::unique_lock lock(mutex);
     store.Evict(target);
   }
 
@@ -109,8 +99,6 @@ class BlockLedger {
   }
 
  private:
-  // So many victims at a time are taken away under the lock.
-  static constexpr size_t kMostVictims = 64;
   // A policy may have to be told so often that an item stays until it picks others.
   static constexpr size_t kMostSpared = 4;
 
@@ -131,13 +119,13 @@ class BlockLedger {
   static void ForEachCell(const Store& store, const Block& block, Fn&& visit) {
     if (block.parent == nullptr) {
       store.Get(block.object)->cells().ForEachRoot(visit);
-    } else {
-      for (Node& child : *block.parent->children) visit(child);
+    } else if (auto* children = block.parent->children.get()) {
+      for (Node& child : *children) visit(child);
     }
   }
   PolicyItem ItemOf(const Store& store, const Block& block) const {
     uint64_t bytes = block.parent == nullptr ? store.Get(block.object)->OwnBytes()
-                                             : sizeof(*block.parent->children);
+                                             : sizeof(typename Node::Children);
     uint64_t cells = 0;
     ForEachCell(store, block, [&](const Node& cell) {
       bytes += Node::BytesOf(cell.payload.get());
@@ -161,9 +149,10 @@ class BlockLedger {
   template <class Fn>
   static uint32_t VisitBelow(size_t object, Node& node, Fn& visit) {
     const uint32_t own = node.last_used.load(std::memory_order_relaxed);
-    if (!node.children) return own;
+    auto* children = node.children.get();
+    if (children == nullptr) return own;
     uint32_t used = 0;
-    for (Node& child : *node.children) used = std::max(used, VisitBelow(object, child, visit));
+    for (Node& child : *children) used = std::max(used, VisitBelow(object, child, visit));
     visit(Block{&node, object}, used);
     return std::max(own, used);
   }
@@ -192,10 +181,9 @@ class BlockLedger {
     KeepWithin(budget / 2);
   }
 
-  bool HasBelow(const Node& node) const { return node.children && !gone_.contains(&node); }
-  bool IsLeaf(const Store& store, const Block& block) const {
+  static bool IsLeaf(const Store& store, const Block& block) {
     bool is_leaf = true;
-    ForEachCell(store, block, [&](const Node& cell) { is_leaf = is_leaf && !HasBelow(cell); });
+    ForEachCell(store, block, [&](const Node& cell) { is_leaf = is_leaf && cell.IsLeaf(); });
     return is_leaf;
   }
   static uint32_t UsedOf(const Store& store, const Block& block) {
@@ -206,40 +194,43 @@ class BlockLedger {
     return used;
   }
   // A block without others below it, at or below this one.
-  Block LeafOf(const Store& store, Block block) const {
+  static Block LeafOf(const Store& store, Block block) {
     while (!IsLeaf(store, block)) {
       Node* next = nullptr;
-      ForEachCell(store, block, [&](Node& cell) { next = HasBelow(cell) ? &cell : next; });
+      ForEachCell(store, block, [&](Node& cell) { next = cell.IsLeaf() ? next : &cell; });
       block.parent = next;
     }
     return block;
   }
 
-  // Blocks to take away, in an order in which they are leaves, and tells the policy that they went.
-  // `spared` counts those that were not for being in use or no leaf; in the end, none is any more.
-  std::vector<Block> Choose(const Store& store, uint64_t target, uint32_t pinned, size_t& spared) {
-    std::vector<Block> victims;
-    gone_.clear();
-    uint64_t bytes = store.byte_size();
-    while (bytes > target && victims.size() < kMostVictims && !held_.empty()) {
+  // Takes blocks away, and tells the policy that they went.
+  void TakeVictims(Store& store, uint64_t target, uint32_t pinned,
+                   typename Store::Removed& removed) {
+    // Those that were not taken for being in use or no leaf; in the end, none is any more.
+    size_t spared = 0;
+    while (store.byte_size() - removed.bytes() + ByteSize() > target && !held_.empty()) {
       const uint64_t picked = policy_->PickVictim();
       Block block = held_.at(picked);
-      if (spared <= kMostSpared * held_.size()) {
-        if (!IsLeaf(store, block) || UsedOf(store, block) >= pinned) {
-          policy_->Spare(picked);
-          ++spared;
-          continue;
-        }
+      const bool may_spare = spared <= kMostSpared * held_.size();
+      if (may_spare && (!IsLeaf(store, block) || UsedOf(store, block) >= pinned)) {
+        policy_->Spare(picked);
+        ++spared;
+        continue;
       }
       block = LeafOf(store, block);
-      const PolicyItem item = ItemOf(store, block);
-      bytes -= std::min(bytes, item.bytes);
-      victims.push_back(block);
-      if (block.parent != nullptr) gone_.insert(block.parent);
+      const uint64_t id = IdOf(block);
+      const bool taken = block.parent != nullptr
+                             ? store.TryTakeChildren(block.object, *block.parent, removed)
+                             : store.TryTakeTree(block.object, removed);
+      if (!taken && !may_spare) return;  // builders own what is left
+      if (!taken) {
+        policy_->Spare(picked);
+        ++spared;
+        continue;
+      }
       // A block that was never booked is no item of the policy.
-      if (held_.erase(item.id) > 0) policy_->Evict(item.id);
+      if (held_.erase(id) > 0) policy_->Evict(id);
     }
-    return victims;
   }
 
   const uint64_t kind_;
@@ -247,7 +238,6 @@ class BlockLedger {
   std::string policy_name_;
   std::unique_ptr<EvictionPolicy> policy_;  // null: not started
   Held held_;                               // by id
-  absl::flat_hash_set<const Node*> gone_;   // parents of victims that are still there
 };
 
 }  // namespace linetree

@@ -4,6 +4,7 @@
 
 #include "core/cache/forest.h"
 #include "core/cache/radiance_cache.h"
+#include "core/math/check.h"
 
 namespace linetree {
 namespace {
@@ -41,7 +42,7 @@ std::vector<SampleKey> RadianceCache::CollectMissing(const Session& session,
                                                      std::span<const int> corners) const {
   std::vector<SampleKey> missing;
   absl::flat_hash_map<SampleKey, bool> seen;
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   for (Work& work : works) {
     if (!work.IsOpen()) continue;
     for (const int corner : corners) {
@@ -80,7 +81,7 @@ void RadianceCache::TraceMissing(const Session& session, const std::vector<Sampl
       if (!sample) sample = *by_key.at(work.KeyOf(corner, session.forest));
     }
   }
-  std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   for (size_t i = 0; i < keys.size(); ++i) {
     if (samples[i]) samples_.Put(keys[i], samples[i]);
   }
@@ -114,9 +115,23 @@ BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef>
   return stats;
 }
 
+RadianceCache::ObjectTrees& RadianceCache::Grow(Forest& forest, int32_t object) {
+  if (!forest.trees) {
+    auto table = std::make_unique<Forest::Trees>(forest.objects);
+    LT_CHECK(forest.trees.PutFirst(table));
+  }
+  auto& slot = (*forest.trees)[static_cast<size_t>(object)];
+  if (!slot) {
+    auto trees = std::make_unique<ObjectTrees>(pools_);
+    LT_CHECK(slot.PutFirst(trees));
+    ++forest.grown;
+  }
+  return *slot;
+}
+
 void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>& works,
                                  BuildStats& stats) {
-  std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   samples_.EndRound();
   stats.cells_tried += works.size();
   for (const Work& work : works) {
@@ -137,10 +152,9 @@ void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>
         return;
       }
     }
-    auto& trees = forest->objects[work.ref.object];
-    if (!trees) trees = std::make_unique<ObjectTrees>(pools_);
-    trees->pair[static_cast<size_t>(work.ref.pair)].Publish(work.ref.cell, work.judgement,
-                                                            session.now);
+    ObjectTrees& trees = Grow(*forest, work.ref.object);
+    trees.pair[static_cast<size_t>(work.ref.pair)].Publish(work.ref.cell, work.judgement,
+                                                           session.now);
   }
 }
 

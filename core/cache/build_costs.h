@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <vector>
 
 namespace linetree {
@@ -23,17 +24,19 @@ class BuildTimer {
   float& ns_;
 };
 
-// Thread safety: none.
+// Thread safety: every method may be called from any thread.
 class BuildCosts {
  public:
   explicit BuildCosts(size_t objects) : of_(objects) {}
 
   void Add(size_t object, float ns) {
+    const std::lock_guard lock(mutex_);
     of_[object].Add(ns);
     all_.Add(ns);
   }
   // Of a cell, on average; of all objects' cells where the object has none.
   float NsPerCell(size_t object) const {
+    const std::lock_guard lock(mutex_);
     const Mean& mean = of_[object].cells > 0 ? of_[object] : all_;
     return std::max(1.0f, mean.ns);
   }
@@ -51,6 +54,8 @@ class BuildCosts {
     }
   };
 
+  mutable std::mutex mutex_;
+  // Guarded by mutex_, but for the number of objects:
   std::vector<Mean> of_;
   Mean all_;
 };

@@ -1,6 +1,7 @@
 // What a cache may hold and when it builds: one plain struct, validated by whoever reads the flags.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -31,6 +32,11 @@ struct CacheOptions {
 struct AheadCounts {
   uint64_t built = 0;
   uint64_t used = 0;
+};
+// The same while many threads count.
+struct AheadCounters {
+  std::atomic<uint64_t> built{0}, used{0};
+  AheadCounts now() const { return {built, used}; }
 };
 
 // Shares of the memory that the surface trees and the certified linetrees get; the linetrees of the

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
+#include <vector>
 
-#include "absl/container/flat_hash_map.h"
 #include "core/cache/radiance_cache.h"
+#include "core/tree/owning_slot.h"
 
 namespace linetree {
 
@@ -18,26 +20,34 @@ struct RadianceCache::ObjectTrees {
 };
 
 struct RadianceCache::Forest {
+  using Trees = std::vector<OwningSlot<ObjectTrees>>;
+
   uint32_t id = 0;
-  uint32_t last_used = 0;
+  std::atomic<uint32_t> last_used{0};
   PathLimits limits;
-  absl::flat_hash_map<int32_t, std::unique_ptr<ObjectTrees>> objects;
+  size_t objects = 0;       // of the scene
+  OwningSlot<Trees> trees;  // by object; made with the first of them
+  uint64_t grown = 0;       // objects that have trees; guarded by mutex_
 
-  // A slot of the table (key, pointer, padding) and its control byte.
-  static constexpr uint64_t kSlotBytes =
-      sizeof(std::pair<const int32_t, std::unique_ptr<ObjectTrees>>) + 1;
+  uint64_t ByteSize() const { return grown * sizeof(ObjectTrees) + (trees ? TableBytes() : 0); }
+  // The most that one more object can add.
+  uint64_t GrowthBytes() const { return sizeof(ObjectTrees) + (trees ? 0 : TableBytes()); }
+  // Within a guard, or by those who change them.
+  ObjectTrees* Find(int32_t object) const {
+    const Trees* all = trees.get();
+    return all == nullptr ? nullptr : (*all)[static_cast<size_t>(object)].get();
+  }
+  // visit(int32_t object, ObjectTrees&); as Find.
+  template <class Fn>
+  void ForEach(Fn&& visit) const {
+    const Trees* all = trees.get();
+    for (size_t object = 0; all != nullptr && object < all->size(); ++object) {
+      if (ObjectTrees* of = (*all)[object].get()) visit(static_cast<int32_t>(object), *of);
+    }
+  }
 
-  uint64_t ByteSize() const {
-    return objects.size() * sizeof(ObjectTrees) + objects.capacity() * kSlotBytes;
-  }
-  // The most that one more object can add; the table doubles when it is full.
-  uint64_t GrowthBytes() const {
-    return sizeof(ObjectTrees) + (objects.capacity() + 8) * kSlotBytes;
-  }
-  Linetree* Find(int32_t object, int32_t pair) const {
-    const auto it = objects.find(object);
-    return it == objects.end() ? nullptr : &it->second->pair[static_cast<size_t>(pair)];
-  }
+ private:
+  uint64_t TableBytes() const { return sizeof(Trees) + objects * sizeof((*trees)[0]); }
 };
 
 }  // namespace linetree

@@ -1,16 +1,19 @@
 #include "core/cache/path_cache.h"
 
 #include <algorithm>
+#include <mutex>
 #include <tuple>
 #include <utility>
 
+#include "core/cache/owned_node.h"
 #include "core/cache/path_forest.h"
+#include "core/math/check.h"
 
 namespace linetree {
 
-// The samples that fall into one leaf.
+// The samples that fall into one leaf, which the group owns.
 struct PathCache::Group {
-  PathNode* node = nullptr;
+  OwnedNode<PathNode> node;
   int32_t object = 0;
   const CellPaths* parent = nullptr;
   int barren_levels = 0;  // how many cells in a row around this one have saved nothing
@@ -24,9 +27,8 @@ PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
       certifier_(tracer),
       interiors_(tracer),
       max_depth_(max_depth),
-      costs_(tracer.scene().objects.size()),
-      memory_bytes_(memory_bytes) {
-  NoteLedgers();
+      memory_bytes_(memory_bytes),
+      costs_(tracer.scene().objects.size()) {
   const Scene& scene = tracer.scene();
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     const Material& material = scene.MaterialOf(i);
@@ -36,49 +38,81 @@ PathCache::PathCache(const Tracer& tracer, uint64_t memory_bytes, int max_depth)
 
 PathCache::~PathCache() = default;
 
-PathCache::Forest* PathCache::FindForest(const PathLimits& limits) const {
-  for (const auto& forest : forests_) {
-    if (forest->limits == limits) return forest.get();
+class PathCache::Builder {
+ public:
+  Builder(PathCache& cache, const PathLimits& limits) : cache_(cache) {
+    const std::lock_guard lock(cache_.ledger_mutex_);
+    forest_ = cache_.OpenForest(limits);
+    if (forest_ != nullptr) ++forest_->builders;
   }
-  return nullptr;
+  ~Builder() {
+    const std::lock_guard lock(cache_.ledger_mutex_);
+    if (forest_ != nullptr) --forest_->builders;
+  }
+  Builder(const Builder&) = delete;
+  Builder& operator=(const Builder&) = delete;
+
+  Forest* forest() const { return forest_; }
+
+ private:
+  PathCache& cache_;
+  Forest* forest_ = nullptr;
+};
+
+PathCache::Forest* PathCache::FindForest(const PathLimits& limits) const {
+  Forest* found = nullptr;
+  ForEachForest([&](Forest& forest) {
+    if (forest.limits == limits) found = &forest;
+  });
+  return found;
 }
 
 PathCache::Reader::Reader(const PathCache& cache, const PathLimits& limits,
                           std::vector<Sample>* samples)
-    : cache_(cache), samples_(samples), lock_(cache.mutex_), now_(cache.clock_) {
+    : cache_(cache), samples_(samples), now_(cache.clock_) {
   if (const Forest* forest = cache.FindForest(limits)) store_ = &forest->store;
 }
 
-PathCache::Forest& PathCache::OpenForest(const PathLimits& limits) {
-  if (Forest* forest = FindForest(limits)) return *forest;
-  if (forests_.size() >= kMaxPathForests) {
-    const auto oldest =
-        std::min_element(forests_.begin(), forests_.end(),
-                         [](const auto& a, const auto& b) { return a->last_used < b->last_used; });
-    const TreeStore<PathTree>& store = (*oldest)->store;
+PathCache::Forest* PathCache::OpenForest(const PathLimits& limits) {
+  if (Forest* forest = FindForest(limits)) return forest;
+  OwningSlot<Forest>* place = nullptr;
+  for (auto& slot : forests_) {
+    if (!slot) {
+      place = &slot;
+      break;
+    }
+    if (slot->builders > 0) continue;
+    if (place == nullptr || slot->last_used < (*place)->last_used) place = &slot;
+  }
+  if (place == nullptr) return nullptr;
+  if (const std::unique_ptr<Forest> oldest = place->Take()) {
+    AwaitReaders();
+    const TreeStore<PathTree>& store = oldest->store;
     evicted_.cells += store.evicted().cells + store.cell_count();
     evicted_.bytes += store.evicted().bytes + store.byte_size();
-    forests_.erase(oldest);
   }
-  const uint64_t used = UsedBytes();
-  forests_.push_back(std::make_unique<Forest>(
-      tracer_.scene(), limits, memory_bytes_ > used ? memory_bytes_ - used : 0, costs_));
-  forests_.back()->ledger.SetPolicy(policy_name_);
-  return *forests_.back();
+  const uint64_t all = memory_bytes_, used = UsedBytes();
+  auto forest =
+      std::make_unique<Forest>(tracer_.scene(), limits, all > used ? all - used : 0, costs_);
+  forest->ledger.SetPolicy(policy_name_);
+  LT_CHECK(place->PutFirst(forest));
+  return place->get();
 }
 
 // Fills in what the larger cells around a group's leaf say.
 void PathCache::LookAround(Forest& forest, Group& group, const PathCoords& at) const {
   const PathTree& tree = *forest.store.Get(static_cast<size_t>(group.object));
   tree.cells().ForEachAround(at.pair, CellAt(at.coords, max_depth_), [&](const PathNode& node) {
-    if (!node.payload || node.payload->steps.empty()) return;
-    if (&node != group.node) group.parent = node.payload.get();
-    group.barren_levels = node.payload->ListsAnything() ? 0 : group.barren_levels + 1;
+    const CellPaths* paths = node.payload.get();
+    if (paths == nullptr || paths->steps.empty()) return;
+    if (&node != group.node.get()) group.parent = paths;
+    group.barren_levels = paths->ListsAnything() ? 0 : group.barren_levels + 1;
   });
 }
 
 std::vector<PathCache::Group> PathCache::GroupByLeaf(Forest& forest,
                                                      std::span<const Sample> samples) const {
+  const EpochGuard reading;
   struct Placed {
     PathNode* node;
     const Sample* sample;
@@ -99,14 +133,19 @@ std::vector<PathCache::Group> PathCache::GroupByLeaf(Forest& forest,
   std::sort(placed.begin(), placed.end(),
             [&](const Placed& a, const Placed& b) { return key(a) < key(b); });
   std::vector<Group> groups;
+  const PathNode* last = nullptr;
+  bool is_ours = false;
   for (const Placed& p : placed) {
-    if (groups.empty() || groups.back().node != p.node) {
+    if (std::exchange(last, p.node) != p.node) {
+      OwnedNode<PathNode> owned(*p.node);
+      is_ours = static_cast<bool>(owned);
+      if (!is_ours) continue;
       groups.emplace_back();
-      groups.back().node = p.node;
+      groups.back().node = std::move(owned);
       groups.back().object = p.sample->object;
       LookAround(forest, groups.back(), p.sample->at);
     }
-    groups.back().samples.push_back(*p.sample);
+    if (is_ours) groups.back().samples.push_back(*p.sample);
   }
   return groups;
 }
@@ -123,12 +162,8 @@ std::vector<PathCache::Group*> PathCache::ChooseNew(std::vector<Group>& groups, 
   return chosen;
 }
 
-std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Group> groups,
-                                                  double weight, const ParallelLoop& loop,
-                                                  size_t& allowance, uint64_t& certified) {
-  for (const Group& group : groups) {
-    group.node->uses += static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
-  }
+void PathCache::Certify(Forest& forest, std::vector<Group>& groups, const ParallelLoop& loop,
+                        size_t& allowance) const {
   const std::vector<Group*> chosen = ChooseNew(groups, allowance);
   allowance -= chosen.size();
   loop(chosen.size(), [&](size_t i) {
@@ -139,43 +174,41 @@ std::vector<PathCache::Sample> PathCache::Descend(Forest& forest, std::vector<Gr
         certifier_.Certify(group.object, chart, group.node->root, BoxOf(group.node->cell),
                            forest.limits, group.parent));
   });
+}
+
+std::vector<PathCache::Sample> PathCache::Publish(Forest& forest, std::vector<Group> groups,
+                                                  bool ahead, uint64_t& certified) {
   std::vector<Sample> next;
-  std::vector<const Group*> published;
-  std::unique_lock lock(mutex_);
-  const uint64_t budget = BudgetOf(forest);
   for (Group& group : groups) {
     PathNode& node = *group.node;
-    if (group.paths) costs_.Add(static_cast<size_t>(group.object), group.ns);
-    if (node.ahead && !refines_ahead_) {
-      node.ahead = false;
-      ++ahead_.used;
-    }
-    if (group.paths && forest.store.Publish(node, std::move(group.paths), budget)) {
-      ++certified;
-      node.ahead = refines_ahead_;
-      ahead_.built += refines_ahead_ ? 1 : 0;
-      if (journal_ != nullptr) published.push_back(&group);
+    const auto object = static_cast<size_t>(group.object);
+    if (!ahead && node.ahead.exchange(false, std::memory_order_relaxed)) ++ahead_.used;
+    if (group.paths) {
+      costs_.Add(object, group.ns);
+      node.ahead = ahead;
+      if (forest.store.Publish(object, node, std::move(group.paths), BudgetOf(forest))) {
+        ++certified;
+        ahead_.built += ahead ? 1 : 0;
+        if (journal_ != nullptr) {
+          journal_->Write(forest.limits, {group.object, node.root, node.cell}, *node.payload);
+        }
+      }
     }
     if (!node.payload || node.payload->IsDecided() || node.cell.depth >= max_depth_) continue;
     // Where dividing has not helped so far, more rays must ask for it.
     if (node.uses < uint64_t{kMinPathDivision} << std::min(group.barren_levels, 8)) continue;
-    if (!forest.store.Divide(node, clock_, budget)) continue;
+    if (!forest.store.Divide(object, node, clock_, BudgetOf(forest))) continue;
     next.insert(next.end(), group.samples.begin(), group.samples.end());
-  }
-  lock.unlock();
-  // Nothing is evicted meanwhile: only who refines does that.
-  for (const Group* group : published) {
-    const PathNode& node = *group->node;
-    journal_->Write(forest.limits, {group->object, node.root, node.cell}, *node.payload);
   }
   return next;
 }
 
 size_t PathCache::Restore(const PathLimits& limits, std::span<KeptPathCell> cells) {
-  std::lock_guard refining(refine_mutex_);
-  std::unique_lock lock(mutex_);
-  if (FindForest(limits) == nullptr && forests_.size() >= kMaxPathForests) return 0;
-  Forest& forest = OpenForest(limits);
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
+  const bool has_place =
+      std::any_of(forests_.begin(), forests_.end(), [](const auto& slot) { return !slot; });
+  if (FindForest(limits) == nullptr && !has_place) return 0;
+  Forest& forest = *OpenForest(limits);
   const uint64_t others = UsedBytes() - forest.store.byte_size();
   const uint64_t target = EvictionTarget(memory_bytes_);
   size_t restored = 0;
@@ -193,124 +226,128 @@ size_t PathCache::Restore(const PathLimits& limits, std::span<KeptPathCell> cell
 void PathCache::BeginAnew() { pinned_ = frame_begin_ = ++clock_; }
 
 void PathCache::NoteLedgers() {
-  uint64_t bytes = costs_.ByteSize();
-  for (const auto& forest : forests_) bytes += forest->ledger.ByteSize();
+  uint64_t bytes = 0;
+  ForEachForest([&](Forest& forest) {
+    forest.ledger_bytes = forest.ledger.ByteSize();
+    bytes += forest.ledger_bytes;
+  });
   ledger_bytes_ = bytes;
 }
 
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
                            const ParallelLoop& loop, bool ahead) {
-  std::lock_guard refining(refine_mutex_);
-  refines_ahead_ = ahead;
+  const std::shared_lock building(builders_mutex_);
+  const uint32_t now = ++clock_;
   uint64_t certified = 0;
-  Forest* forest = nullptr;
-  std::vector<Group> groups;
-  {
-    std::unique_lock lock(mutex_);
-    ++clock_;
-    if (memory_bytes_ == 0) return 0;
-    forest = &OpenForest(limits);
-    forest->last_used = clock_;
-    forest->store.PlantWanted(BudgetOf(*forest), [](size_t) { return true; });
-    groups = GroupByLeaf(*forest, samples);
+  if (memory_bytes_ > 0) {
+    const Builder builder(*this, limits);
+    if (builder.forest() == nullptr) return 0;
+    Forest& forest = *builder.forest();
+    forest.last_used = now;
+    forest.store.PlantWanted(BudgetOf(forest), [](size_t) { return true; });
+    const double rays = static_cast<double>(samples.size()) * weight;
+    size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
+    std::vector<Group> groups = GroupByLeaf(forest, samples);
+    while (!groups.empty()) {
+      for (const Group& group : groups) {
+        group.node->uses +=
+            static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
+      }
+      Certify(forest, groups, loop, allowance);
+      const std::vector<Sample> next = Publish(forest, std::move(groups), ahead, certified);
+      groups = GroupByLeaf(forest, next);
+    }
   }
-  const double rays = static_cast<double>(samples.size()) * weight;
-  size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
-  while (!groups.empty()) {
-    const std::vector<Sample> next =
-        Descend(*forest, std::move(groups), weight, loop, allowance, certified);
-    groups = GroupByLeaf(*forest, next);
-  }
+  const std::lock_guard evicting(ledger_mutex_);
   Evict();
   return certified;
 }
 
 uint64_t PathCache::UsedBytes() const {
   uint64_t bytes = 0;
-  for (const auto& forest : forests_) {
-    bytes += forest->store.byte_size() + forest->ledger.ByteSize();
-  }
+  ForEachForest([&](const Forest& forest) { bytes += forest.BytesHeld(); });
   return bytes;
 }
 
 uint64_t PathCache::BudgetOf(const Forest& forest) const {
-  const uint64_t others = UsedBytes() - forest.store.byte_size();
-  return memory_bytes_ > others ? memory_bytes_ - others : 0;
+  const EpochGuard reading;
+  uint64_t others = forest.ledger_bytes;
+  ForEachForest([&](const Forest& other) { others += &other == &forest ? 0 : other.BytesHeld(); });
+  const uint64_t all = memory_bytes_;
+  return all > others ? all - others : 0;
 }
 
 // From the forests that were used longest ago on.
 void PathCache::Evict() {
+  NoteLedgers();
   std::vector<Forest*> order;
-  for (const auto& forest : forests_) order.push_back(forest.get());
+  ForEachForest([&](Forest& forest) { order.push_back(&forest); });
   std::sort(order.begin(), order.end(),
             [](const Forest* a, const Forest* b) { return a->last_used < b->last_used; });
   const uint64_t target = EvictionTarget(memory_bytes_);
   for (Forest* forest : order) {
     const uint64_t used = UsedBytes();
     if (used <= target) break;
-    const uint64_t excess = used - target;
-    const uint64_t held = forest->store.byte_size() + forest->ledger.ByteSize();
-    forest->ledger.Evict(forest->store, held > excess ? held - excess : 0, pinned_, mutex_);
+    const uint64_t excess = used - target, held = forest->BytesHeld();
+    forest->ledger.Evict(forest->store, held > excess ? held - excess : 0, pinned_);
+    NoteLedgers();
   }
-  NoteLedgers();
 }
 
 void PathCache::EndFrame(const FrameMark& mark) {
-  std::unique_lock refining(refine_mutex_, std::defer_lock);
+  std::unique_lock lock(ledger_mutex_, std::defer_lock);
   if (mark.recorder != nullptr) {
-    refining.lock();
-  } else if (!refining.try_lock()) {
+    lock.lock();
+  } else if (!lock.try_lock()) {
     return;
   }
   const uint64_t target = EvictionTarget(memory_bytes_);
-  for (const auto& forest : forests_) {
-    const uint64_t own = forest->store.byte_size() + forest->ledger.ByteSize();
-    const uint64_t others = UsedBytes() - own;
-    forest->ledger.EndFrame(forest->store, frame_begin_, target > others ? target - others : 0,
-                            mark);
-  }
+  ForEachForest([&](Forest& forest) {
+    const uint64_t others = UsedBytes() - forest.BytesHeld();
+    forest.ledger.EndFrame(forest.store, frame_begin_, target > others ? target - others : 0, mark);
+    forest.ledger_bytes = forest.ledger.ByteSize();
+  });
   pinned_ = frame_begin_;
   frame_begin_ = ++clock_;
   Evict();  // ledgers may have grown
 }
 
 void PathCache::SetPolicy(std::string_view name) {
-  std::lock_guard refining(refine_mutex_);
+  const std::lock_guard lock(ledger_mutex_);
   policy_name_ = std::string(name);
-  for (const auto& forest : forests_) forest->ledger.SetPolicy(name);
+  ForEachForest([&](Forest& forest) { forest.ledger.SetPolicy(name); });
   NoteLedgers();
 }
 
 Evicted PathCache::evicted() const {
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(ledger_mutex_);
   Evicted all = evicted_;
-  for (const auto& forest : forests_) {
-    all.cells += forest->store.evicted().cells;
-    all.bytes += forest->store.evicted().bytes;
-  }
+  ForEachForest([&](const Forest& forest) {
+    all.cells += forest.store.evicted().cells;
+    all.bytes += forest.store.evicted().bytes;
+  });
   return all;
 }
 
 Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
   const SceneChange& change = reach.change();
-  std::scoped_lock refining(refine_mutex_, former.refine_mutex_);
+  const std::scoped_lock alone(builders_mutex_, former.builders_mutex_);
+  const std::scoped_lock ledgers(ledger_mutex_, former.ledger_mutex_);
   Adopted adopted;
-  {
-    std::scoped_lock lock(mutex_, former.mutex_);
-    former.memory_bytes_ = 0;
-    clock_ = former.clock_.load();
-    for (const auto& forest : former.forests_) {
-      const uint64_t before = forest->store.cell_count();
-      Forest& own = OpenForest(forest->limits);
-      own.last_used = forest->last_used;
-      own.store.Adopt(forest->store, change, BudgetOf(own), [&](PathTree& tree) {
-        return tree.cells().Prune(/*covers=*/false,
-                                  [&](const PathNode& node) { return reach.Touches(tree, node); });
-      });
-      own.ledger.Reset();
-      adopted.dropped += before;
-    }
-    former.forests_.clear();
+  former.memory_bytes_ = 0;
+  clock_ = former.clock_.load();
+  for (auto& slot : former.forests_) {
+    const std::unique_ptr<Forest> forest = slot.Take();
+    if (!forest) continue;
+    AwaitReaders();
+    adopted.dropped += forest->store.cell_count();
+    Forest& own = *OpenForest(forest->limits);
+    own.last_used = forest->last_used.load();
+    own.store.Adopt(forest->store, change, BudgetOf(own), [&](PathTree& tree) {
+      tree.cells().Prune(/*covers=*/false,
+                         [&](const PathNode& node) { return reach.Touches(tree, node); });
+    });
+    own.ledger.Reset();
   }
   BeginAnew();
   Evict();
@@ -320,58 +357,52 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
 }
 
 void PathCache::SetMemoryBytes(uint64_t memory_bytes) {
-  std::lock_guard refining(refine_mutex_);
-  {
-    std::unique_lock lock(mutex_);
-    memory_bytes_ = memory_bytes;
-  }
-  for (const auto& forest : forests_) forest->ledger.Reset();  // they know another budget
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
+  memory_bytes_ = memory_bytes;
+  ForEachForest([](Forest& forest) { forest.ledger.Reset(); });  // they know another budget
   Evict();
 }
 
 uint64_t PathCache::ByteSize() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   uint64_t bytes = 0;
-  for (const auto& forest : forests_) bytes += forest->store.byte_size();
+  ForEachForest([&](const Forest& forest) { bytes += forest.store.byte_size(); });
   return bytes;
 }
 
 uint64_t PathCache::CountBytes() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   uint64_t bytes = 0;
-  for (const auto& forest : forests_) bytes += forest->store.CountBytes();
+  ForEachForest([&](const Forest& forest) { bytes += forest.store.CountBytes(); });
   return bytes;
 }
 
 uint64_t PathCache::CellCount() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   uint64_t cells = 0;
-  for (const auto& forest : forests_) cells += forest->store.cell_count();
+  ForEachForest([&](const Forest& forest) { cells += forest.store.cell_count(); });
   return cells;
 }
 
-AheadCounts PathCache::ahead() const {
-  std::shared_lock lock(mutex_);
-  return ahead_;
-}
-
 std::vector<std::array<uint64_t, kVerdictCount>> PathCache::CellVerdicts() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   std::vector<std::array<uint64_t, kVerdictCount>> verdicts(branches_.size());
-  for (const auto& forest : forests_) {
-    forest->store.ForEachTree([&](size_t object, PathTree& tree) {
-      tree.cells().ForEach([&](PathNode& node) {
-        if (node.payload) ++verdicts[object][static_cast<size_t>(node.payload->verdict)];
-      });
+  ForEachForest([&](const Forest& forest) {
+    forest.store.ForEachTree([&](size_t object, PathTree& tree) {
+      const auto counts = tree.cells().counts();
+      for (size_t v = 0; v < kVerdictCount; ++v) verdicts[object][v] += counts.cells[v];
     });
-  }
+  });
   return verdicts;
 }
 
 void PathCache::Clear() {
-  std::lock_guard refining(refine_mutex_);
-  std::unique_lock lock(mutex_);
-  forests_.clear();
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
+  for (auto& slot : forests_) {
+    const std::unique_ptr<Forest> forest = slot.Take();
+    if (forest) AwaitReaders();
+  }
+  NoteLedgers();
 }
 
 }  // namespace linetree

@@ -2,8 +2,7 @@
 // budget: where branches go, and radiance that may be interpolated. All requests with the same path
 // limits share them.
 //
-// Thread safety: every method may be called from any thread. Readers share a lock; Refine certifies
-// outside it and takes it to publish.
+// Thread safety: as surface_cache.h.
 #pragma once
 
 #include <array>
@@ -19,6 +18,7 @@
 #include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
+#include "core/cache/epoch.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
 #include "core/certify/path_certifier.h"
@@ -57,7 +57,7 @@ class PathCache {
     PathCoords at;
   };
 
-  // Holds the lock: keep it short, a part of a frame.
+  // As SurfaceCache::Reader.
   class Reader : public PathLists {
    public:
     // With `samples`, rays that are looked up are added to them, up to kMaxSamples; they must
@@ -78,14 +78,14 @@ class PathCache {
     void Take(const Sample& sample) const {
       if (samples_ != nullptr && samples_->size() < kMaxSamples) samples_->push_back(sample);
     }
-    // visit(const PathNode&) for the cells around a ray of which something is known, the largest
-    // first; false when the ray has no place in any tree.
+    // visit(const PathNode&, const CellPaths&) for the cells around a ray of which something is
+    // known, the largest first; false when the ray has no place in any tree.
     template <class Fn>
     bool ForEachKnown(const Hit& hit, const Vec3d& direction, PathCoords& at, Fn&& visit) const;
 
     const PathCache& cache_;
     std::vector<Sample>* const samples_;
-    std::shared_lock<std::shared_mutex> lock_;
+    const EpochGuard guard_;
     const TreeStore<PathTree>* store_ = nullptr;  // null: no trees for these limits yet
     uint32_t now_ = 0;
     // What Interpolate saw on its way, for the Find that follows it.
@@ -111,13 +111,13 @@ class PathCache {
   void EndFrame(const FrameMark& mark);
   void SetPolicy(std::string_view name);
   Evicted evicted() const;
-  uint64_t LedgerBytes() const { return ledger_bytes_; }
+  uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
   void SetMemoryBytes(uint64_t memory_bytes);
   uint64_t ByteSize() const;
   uint64_t CountBytes() const;
   uint64_t CellCount() const;
-  AheadCounts ahead() const;
+  AheadCounts ahead() const { return ahead_.now(); }
   // Cells by verdict, for every object of the scene.
   std::vector<std::array<uint64_t, kVerdictCount>> CellVerdicts() const;
   void Clear();
@@ -125,21 +125,36 @@ class PathCache {
  private:
   struct Forest;
   struct Group;
+  // Builds in a forest as long as it lives, which stays so long.
+  class Builder;
 
+  // Null where there is none; within a guard, or by those who keep it from being taken away.
   Forest* FindForest(const PathLimits& limits) const;
-  Forest& OpenForest(const PathLimits& limits);
+  // Null where others build in as many as there may be. Needs ledger_mutex_.
+  Forest* OpenForest(const PathLimits& limits);
+  // visit(Forest&), as FindForest.
+  template <class Fn>
+  void ForEachForest(Fn&& visit) const {
+    for (const auto& slot : forests_) {
+      if (Forest* forest = slot.get()) visit(*forest);
+    }
+  }
   void LookAround(Forest& forest, Group& group, const PathCoords& at) const;
+  // Those of the samples' leaves that nobody else owns.
   std::vector<Group> GroupByLeaf(Forest& forest, std::span<const Sample> samples) const;
   // Of the groups' cells, certifies those that pay and most ask for, `allowance` at most (which it
-  // takes them from), and divides them; the samples that go on come back.
-  std::vector<Sample> Descend(Forest& forest, std::vector<Group> groups, double weight,
-                              const ParallelLoop& loop, size_t& allowance, uint64_t& certified);
+  // takes them from).
+  void Certify(Forest& forest, std::vector<Group>& groups, const ParallelLoop& loop,
+               size_t& allowance) const;
+  // Puts that into the trees and divides cells; the samples that go on come back.
+  std::vector<Sample> Publish(Forest& forest, std::vector<Group> groups, bool ahead,
+                              uint64_t& certified);
   static std::vector<Group*> ChooseNew(std::vector<Group>& groups, size_t allowance);
-  // By trees and ledgers.
+  // By trees and ledgers; within a guard, or as FindForest.
   uint64_t UsedBytes() const;
   // What the other forests leave of the budget.
   uint64_t BudgetOf(const Forest& forest) const;
-  // Down to what a pass leaves. Needs refine_mutex_.
+  // Down to what a pass leaves. Needs ledger_mutex_, as the next two.
   void Evict();
   // As SurfaceCache's.
   void BeginAnew();
@@ -150,21 +165,20 @@ class PathCache {
   const SolidInteriors interiors_;
   const int max_depth_;
   CellJournal* journal_ = nullptr;
-  std::vector<bool> branches_;             // by object: whether it reflects or transmits
-  std::atomic<uint64_t> ledger_bytes_{0};  // not guarded
-  mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
-  // Guarded by refine_mutex_:
-  bool refines_ahead_ = false;
+  std::vector<bool> branches_;  // by object: whether it reflects or transmits
+  std::atomic<uint64_t> memory_bytes_;
+  std::atomic<uint64_t> ledger_bytes_{0};
+  std::atomic<uint32_t> clock_{1};
+  std::array<OwningSlot<Forest>, kMaxPathForests> forests_;
   BuildCosts costs_;
+  AheadCounters ahead_;
+  // As SurfaceCache's.
+  mutable std::shared_mutex builders_mutex_;
+  mutable std::mutex ledger_mutex_;
+  // Guarded by ledger_mutex_, as are the forests' ledgers and which forests there are:
   std::string policy_name_;
   uint32_t frame_begin_ = 1, pinned_ = 1;  // as SurfaceCache's
-  mutable std::shared_mutex mutex_;
-  // Guarded by mutex_:
-  uint64_t memory_bytes_;
-  std::vector<std::unique_ptr<Forest>> forests_;
-  AheadCounts ahead_;
-  Evicted evicted_;                  // from forests that are gone
-  std::atomic<uint32_t> clock_ = 1;  // not guarded
+  Evicted evicted_;                        // from forests that are gone
 };
 
 }  // namespace linetree

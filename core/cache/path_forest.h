@@ -18,10 +18,14 @@ struct PathCache::Forest {
            static_cast<uint64_t>(limits.max_depth);
   }
 
-  PathLimits limits;
+  uint64_t BytesHeld() const { return store.byte_size() + ledger_bytes; }
+
+  const PathLimits limits;
   TreeStore<PathTree> store;
   BlockLedger<PathTree> ledger;
-  uint32_t last_used = 0;
+  std::atomic<uint64_t> ledger_bytes{0};  // for those who may not ask the ledger
+  std::atomic<uint32_t> last_used{0};
+  int builders = 0;  // guarded by ledger_mutex_
 };
 
 }  // namespace linetree

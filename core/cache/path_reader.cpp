@@ -21,7 +21,8 @@ bool PathCache::Reader::ForEachKnown(const Hit& hit, const Vec3d& direction, Pat
                                 if (node.last_used.load(std::memory_order_relaxed) != now_) {
                                   node.last_used.store(now_, std::memory_order_relaxed);
                                 }
-                                if (node.payload && !node.payload->steps.empty()) visit(node);
+                                const CellPaths* paths = node.payload.get();
+                                if (paths != nullptr && !paths->steps.empty()) visit(node, *paths);
                               });
   return true;
 }
@@ -33,9 +34,10 @@ const PathStep* PathCache::Reader::Find(const Hit& hit, const Vec3d& direction) 
   }
   PathCoords at;
   const PathStep* steps = nullptr;
-  const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
-    if (node.payload->steps[0].EndsAt(hit)) steps = node.payload->steps.data();
-  });
+  const bool placed =
+      ForEachKnown(hit, direction, at, [&](const PathNode&, const CellPaths& paths) {
+        if (paths.steps[0].EndsAt(hit)) steps = paths.steps.data();
+      });
   if (placed) Take({hit.object, at});
   return steps;
 }
@@ -50,15 +52,15 @@ Verdict PathCache::Reader::Interpolate(const Hit& hit, const Vec3d& direction, d
   seen_direction_ = direction;
   seen_steps_ = nullptr;
   seen_sample_.reset();
-  const bool placed = ForEachKnown(hit, direction, at, [&](const PathNode& node) {
-    const CellPaths& paths = *node.payload;
-    const bool ends = paths.steps[0].EndsAt(hit);
-    if (ends) seen_steps_ = paths.steps.data();
-    verdict = paths.verdict;
-    if (verdict != Verdict::kCertified) return;
-    verdict = paths.spread <= epsilon ? Verdict::kGap : Verdict::kEpsilon;
-    if (paths.spread <= epsilon && ends) best = &node;
-  });
+  const bool placed =
+      ForEachKnown(hit, direction, at, [&](const PathNode& node, const CellPaths& paths) {
+        const bool ends = paths.steps[0].EndsAt(hit);
+        if (ends) seen_steps_ = paths.steps.data();
+        verdict = paths.verdict;
+        if (verdict != Verdict::kCertified) return;
+        verdict = paths.spread <= epsilon ? Verdict::kGap : Verdict::kEpsilon;
+        if (paths.spread <= epsilon && ends) best = &node;
+      });
   if (placed) seen_sample_ = Sample{hit.object, at};
   if (best == nullptr) return verdict;
   radiance = Evaluate(*best->payload->interpolant, LocalCoords(best->cell, at.coords));

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <mutex>
 
+#include "core/cache/epoch.h"
 #include "core/cache/forest.h"
+#include "core/math/check.h"
 
 namespace linetree {
 namespace {
@@ -39,36 +41,44 @@ RadianceCache::RadianceCache(const Tracer& tracer, const CacheOptions& options)
 RadianceCache::~RadianceCache() = default;
 
 RadianceCache::Session RadianceCache::Open(const PathLimits& limits) {
-  std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   clock_ = (clock_ + 1) & kStampMask;
-  for (const auto& forest : forests_) {
-    if (!(forest->limits == limits)) continue;
-    forest->last_used = clock_;
-    return {forest->id, clock_, limits};
-  }
-  if (forests_.size() >= kMaxForests) {
-    const auto oldest =
-        std::min_element(forests_.begin(), forests_.end(),
-                         [](const auto& a, const auto& b) { return a->last_used < b->last_used; });
-    for (auto& [object, trees] : (*oldest)->objects) {
-      for (Linetree& tree : trees->pair) tree.Clear();
+  OwningSlot<Forest>* place = nullptr;
+  for (auto& slot : forests_) {
+    const Forest* forest = slot.get();
+    if (forest != nullptr && forest->limits == limits) {
+      slot->last_used = clock_;
+      return {forest->id, clock_, limits};
     }
-    samples_.DropForest((*oldest)->id);
-    forests_.erase(oldest);
+    const bool is_better =
+        place == nullptr ||
+        (*place && (forest == nullptr || forest->last_used < (*place)->last_used));
+    if (is_better) place = &slot;
   }
+  Drop(*place);
   auto forest = std::make_unique<Forest>();
   forest->id = next_forest_++;
   forest->last_used = clock_;
   forest->limits = limits;
-  forests_.push_back(std::move(forest));
-  return {forests_.back()->id, clock_, limits};
+  forest->objects = charts_.size();
+  LT_CHECK(place->PutFirst(forest));
+  return {(*place)->id, clock_, limits};
+}
+
+void RadianceCache::Drop(OwningSlot<Forest>& slot) {
+  const std::unique_ptr<Forest> forest = slot.Take();
+  if (!forest) return;
+  AwaitReaders();
+  forest->ForEach([](int32_t, ObjectTrees& trees) {
+    for (Linetree& tree : trees.pair) tree.Clear();
+  });
+  samples_.DropForest(forest->id);
 }
 
 RadianceCache::Forest* RadianceCache::FindForest(uint32_t id) const {
-  for (const auto& forest : forests_) {
-    if (forest->id == id) return forest.get();
-  }
-  return nullptr;
+  Forest* found = nullptr;
+  ForEachForest([&](Forest& forest) { found = forest.id == id ? &forest : found; });
+  return found;
 }
 
 std::optional<CellQuery> RadianceCache::QueryFor(const Hit& hit, const Ray& ray) const {
@@ -86,19 +96,20 @@ std::optional<CellQuery> RadianceCache::QueryFor(const Hit& hit, const Ray& ray)
 
 void RadianceCache::Find(const Session& session, double epsilon, std::span<const CellQuery> queries,
                          std::span<CellAnswer> answers) const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   const Forest* forest = FindForest(session.forest);
   for (size_t i = 0; i < queries.size(); ++i) {
     const CellQuery& query = queries[i];
     CellAnswer& answer = answers[i];
     answer = {};
     if (forest == nullptr) continue;
-    const Linetree* tree = forest->Find(query.object, query.pair);
-    if (tree == nullptr) {
+    const ObjectTrees* trees = forest->Find(query.object);
+    if (trees == nullptr) {
       answer.kind = Lookup::Kind::kUnbuilt;
       continue;
     }
-    const Lookup found = tree->Find(query.coords, epsilon, options_.max_cell_depth, session.now);
+    const Linetree& tree = trees->pair[static_cast<size_t>(query.pair)];
+    const Lookup found = tree.Find(query.coords, epsilon, options_.max_cell_depth, session.now);
     answer.kind = found.kind;
     answer.verdict = found.verdict;
     answer.cell = found.cell;
@@ -109,7 +120,7 @@ void RadianceCache::Find(const Session& session, double epsilon, std::span<const
 }
 
 void RadianceCache::SetMemoryBytes(uint64_t memory_bytes) {
-  std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   cell_budget_ = memory_bytes - SampleBudget(memory_bytes);
   samples_.SetLimit(SampleBudget(memory_bytes));
   // A tick of its own: no session's cells are exempt.
@@ -119,61 +130,56 @@ void RadianceCache::SetMemoryBytes(uint64_t memory_bytes) {
 
 uint64_t RadianceCache::CellBytes() const {
   uint64_t bytes = pools_.ByteSize();
-  for (const auto& forest : forests_) bytes += forest->ByteSize();
+  ForEachForest([&](const Forest& forest) { bytes += forest.ByteSize(); });
   return bytes;
 }
 
 uint64_t RadianceCache::ByteSize() const {
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   return CellBytes() + samples_.ByteSize();
 }
 
 uint64_t RadianceCache::CountBytes() const {
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   uint64_t bytes = samples_.CountBytes();
-  for (const auto& forest : forests_) {
-    bytes += forest->ByteSize();
-    for (const auto& [object, trees] : forest->objects) {
-      for (const Linetree& tree : trees->pair) bytes += tree.CountBytes();
-    }
-  }
+  ForEachForest([&](const Forest& forest) {
+    bytes += forest.ByteSize();
+    forest.ForEach([&](int32_t, const ObjectTrees& trees) {
+      for (const Linetree& tree : trees.pair) bytes += tree.CountBytes();
+    });
+  });
   return bytes;
 }
 
 uint64_t RadianceCache::CellCount() const {
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   uint64_t cells = 0;
-  for (const auto& forest : forests_) {
-    for (const auto& [object, trees] : forest->objects) {
-      for (const Linetree& tree : trees->pair) cells += tree.cell_count();
-    }
-  }
+  ForEachForest([&](const Forest& forest) {
+    forest.ForEach([&](int32_t, const ObjectTrees& trees) {
+      for (const Linetree& tree : trees.pair) cells += tree.cell_count();
+    });
+  });
   return cells;
 }
 
 std::vector<std::array<uint64_t, kVerdictCount>> RadianceCache::CellVerdicts() const {
-  std::shared_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   std::vector<std::array<uint64_t, kVerdictCount>> verdicts(charts_.size());
-  for (const auto& forest : forests_) {
-    for (const auto& [object, trees] : forest->objects) {
-      for (const Linetree& tree : trees->pair) {
+  ForEachForest([&](const Forest& forest) {
+    forest.ForEach([&](int32_t object, const ObjectTrees& trees) {
+      for (const Linetree& tree : trees.pair) {
         for (size_t v = 0; v < kVerdictCount; ++v) {
           verdicts[static_cast<size_t>(object)][v] += tree.verdicts()[v];
         }
       }
-    }
-  }
+    });
+  });
   return verdicts;
 }
 
 void RadianceCache::Clear() {
-  std::unique_lock lock(mutex_);
-  for (const auto& forest : forests_) {
-    for (auto& [object, trees] : forest->objects) {
-      for (Linetree& tree : trees->pair) tree.Clear();
-    }
-  }
-  forests_.clear();
+  const std::lock_guard lock(mutex_);
+  for (auto& slot : forests_) Drop(slot);
   samples_.Clear();
 }
 

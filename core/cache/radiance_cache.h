@@ -4,15 +4,16 @@
 // (at most kMaxForests; the one that was used least recently makes room). The answer to a ray never
 // depends on what else the cache holds beyond the choice between interpolating and tracing.
 //
-// Thread safety: every method may be called from any thread. One shared lock guards forests, pools
-// and samples; judging and tracing run outside it.
+// Thread safety: every method may be called from any thread. Find waits for nobody (epoch.h); one
+// lock guards what changes forests, pools and samples. Judging and tracing run outside it.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "core/cache/parallel_loop.h"
 #include "core/cache/sample_store.h"
 #include "core/tree/linetree.h"
+#include "core/tree/owning_slot.h"
 #include "core/tree/paper_judge.h"
 
 namespace linetree {
@@ -111,8 +113,19 @@ class RadianceCache {
   struct ObjectTrees;
   struct Forest;
   struct Work;
+  struct Victim;
 
+  // Within a guard, or with the lock.
   Forest* FindForest(uint32_t id) const;
+  // visit(Forest&); as FindForest.
+  template <class Fn>
+  void ForEachForest(Fn&& visit) const {
+    for (const auto& slot : forests_) {
+      if (Forest* forest = slot.get()) visit(*forest);
+    }
+  }
+  // Takes a forest out when nobody reads it any more. Needs the lock.
+  void Drop(OwningSlot<Forest>& slot);
   // Bytes of forests and cells, without samples. Needs the lock.
   uint64_t CellBytes() const;
   std::vector<SampleKey> CollectMissing(const Session& session, std::vector<Work>& works,
@@ -120,10 +133,16 @@ class RadianceCache {
   void TraceMissing(const Session& session, const std::vector<SampleKey>& keys,
                     const ParallelLoop& loop, std::vector<Work>& works,
                     std::span<const int> corners, BuildStats& stats);
+  // The object's trees, made where there are none. Needs the lock.
+  ObjectTrees& Grow(Forest& forest, int32_t object);
   void PublishWorks(const Session& session, const std::vector<Work>& works, BuildStats& stats);
   // Frees cells not used by this session, least recently used leaves first, until `needed` more
-  // bytes fit. Returns how many it evicted.
+  // bytes fit. Returns how many it evicted. Needs the lock.
   uint64_t MakeRoom(uint64_t needed, uint32_t now);
+  // Those that this session does not use, in the order in which they go.
+  std::vector<Victim> Leaves(uint32_t now) const;
+  // Of objects that have no cells any more.
+  void TakeBareTrees(std::vector<std::unique_ptr<ObjectTrees>>& bare);
 
   const Tracer& tracer_;
   const CacheOptions options_;
@@ -131,12 +150,13 @@ class RadianceCache {
   std::vector<ObjectChart> charts_;  // by object
   std::vector<bool> caches_;         // by object: whether looking up can pay
 
-  mutable std::shared_mutex mutex_;
+  mutable std::mutex mutex_;
+  // Guarded by mutex_, but for Find:
+  CellPools pools_;
+  std::array<OwningSlot<Forest>, kMaxForests> forests_;
   // Guarded by mutex_:
   uint64_t cell_budget_;  // what the samples' share leaves
-  CellPools pools_;
   SampleStore samples_;
-  std::vector<std::unique_ptr<Forest>> forests_;
   uint32_t next_forest_ = 1;
   uint32_t clock_ = 0;
 };

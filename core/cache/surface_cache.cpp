@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
+
+#include "core/cache/owned_node.h"
 
 namespace linetree {
 
 // Tells blocks from those of other caches.
 constexpr uint64_t kLedgerKind = 1;
 
-// A node whose lights are to be certified, and what comes after.
+// A node whose lights are to be certified, and what comes after. It owns the node.
 struct SurfaceCache::Work {
-  SurfaceNode* node = nullptr;
+  OwnedNode<SurfaceNode> node;
   size_t object = 0;
   double points = 0;  // shading points expected in it
   const CellLights* parent = nullptr;
@@ -25,15 +28,15 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
     : certifier_(tracer, uses_functions),
       summer_(tracer.scene()),
       min_uses_(min_uses),
-      costs_(tracer.scene().objects.size()),
-      ledger_(kLedgerKind, costs_),
       memory_bytes_(memory_bytes),
-      store_(tracer.scene(), memory_bytes) {
+      store_(tracer.scene(), memory_bytes),
+      costs_(tracer.scene().objects.size()),
+      ledger_(kLedgerKind, costs_) {
   NoteLedger();
 }
 
 SurfaceCache::Reader::Reader(const SurfaceCache& cache, double epsilon, uint32_t points)
-    : cache_(cache), epsilon_(epsilon), points_(points), lock_(cache.mutex_) {}
+    : cache_(cache), epsilon_(epsilon), points_(points) {}
 
 KnownLights SurfaceCache::Reader::Find(const Hit& hit) const {
   const auto object = static_cast<size_t>(hit.object);
@@ -50,7 +53,7 @@ const SurfaceTree* SurfaceCache::Reader::TreeOf(size_t object) const {
 }
 
 std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const Thrift& thrift) {
-  std::unique_lock lock(mutex_);
+  const EpochGuard reading;
   ++clock_;
   std::vector<Work> works;
   store_.ForEachTree([&](size_t object, SurfaceTree& tree) {
@@ -61,14 +64,15 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
     tree.cells().ForEach([&](SurfaceNode& node) {
       if (!node.IsLeaf()) return;
       const uint32_t uses = node.uses.exchange(0, std::memory_order_relaxed);
-      if (node.ahead && uses > 0 && !thrift.ahead) {
-        node.ahead = false;
+      if (uses > 0 && !thrift.ahead && node.ahead.exchange(false, std::memory_order_relaxed)) {
         ++ahead_.used;
       }
       if (uses < thrift.least_uses || uses == 0) return;
-      if (node.payload && !node.payload->WantsSmaller()) return;
-      if (uses * weight < least(node.payload.get())) return;
-      works.push_back({&node, object, uses * weight});
+      const CellLights* known = node.payload.get();
+      if (known != nullptr && !known->WantsSmaller()) return;
+      if (uses * weight < least(known)) return;
+      OwnedNode<SurfaceNode> owned(node);
+      if (owned) works.push_back({std::move(owned), object, uses * weight});
     });
   });
   store_.PlantWanted(TreeBudget(), [&](size_t object) {
@@ -113,9 +117,8 @@ bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights,
          work.points >= 2 * (*thrift.least_points)(work.object, &lights);
 }
 
-std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
-                                                      const ParallelLoop& loop,
-                                                      const Thrift& thrift) {
+void SurfaceCache::Certify(std::vector<Work>& works, const ParallelLoop& loop,
+                           const Thrift& thrift) const {
   loop(works.size(), [&](size_t i) {
     Work& work = works[i];
     if (work.node->payload) return;
@@ -131,38 +134,36 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works,
     lights->MakeTasks(summer_.scene());
     work.lights = std::move(lights);
   });
+}
+
+std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works, const Thrift& thrift,
+                                                      uint64_t& certified) {
   std::vector<Work> next;
-  std::vector<const Work*> published;
-  {
-    std::unique_lock lock(mutex_);
-    for (Work& work : works) {
-      SurfaceNode& node = *work.node;
-      if (!node.payload) {
-        if (!work.lights) continue;  // the loop was cut short
-        costs_.Add(work.object, work.ns);
-        if (!store_.Publish(node, std::move(work.lights), TreeBudget())) continue;
-        node.ahead = thrift.ahead;
-        ahead_.built += thrift.ahead ? 1 : 0;
-        if (journal_ != nullptr) published.push_back(&work);
-      }
-      if (!ShouldDivide(work, *node.payload, thrift) || !store_.Divide(node, clock_, TreeBudget()))
-        continue;
-      for (SurfaceNode& child : *node.children) {
-        next.push_back({&child, work.object, work.points / 4, node.payload.get()});
+  for (Work& work : works) {
+    SurfaceNode& node = *work.node;
+    if (!node.payload) {
+      if (!work.lights) continue;  // the loop was cut short
+      costs_.Add(work.object, work.ns);
+      node.ahead = thrift.ahead;
+      if (!store_.Publish(work.object, node, std::move(work.lights), TreeBudget())) continue;
+      ++certified;
+      ahead_.built += thrift.ahead ? 1 : 0;
+      if (journal_ != nullptr) {
+        journal_->Write({static_cast<int32_t>(work.object), node.root, node.cell}, *node.payload);
       }
     }
-  }
-  // Nothing is evicted meanwhile: only who refines does that.
-  for (const Work* work : published) {
-    const SurfaceNode& node = *work->node;
-    journal_->Write({static_cast<int32_t>(work->object), node.root, node.cell}, *node.payload);
+    if (!ShouldDivide(work, *node.payload, thrift)) continue;
+    if (!store_.Divide(work.object, node, clock_, TreeBudget(), /*owned=*/true)) continue;
+    for (SurfaceNode& child : *node.children) {
+      next.push_back(
+          {OwnedNode<SurfaceNode>::Adopt(child), work.object, work.points / 4, node.payload.get()});
+    }
   }
   return next;
 }
 
 size_t SurfaceCache::Restore(std::span<KeptSurfaceCell> cells) {
-  std::lock_guard refining(refine_mutex_);
-  std::unique_lock lock(mutex_);
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
   size_t restored = 0;
   for (auto& [place, lights] : cells) {
     if (!store_.Restore(static_cast<size_t>(place.object), place.patch, place.cell,
@@ -178,28 +179,29 @@ void SurfaceCache::BeginAnew() { pinned_ = frame_begin_ = ++clock_; }
 
 SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop,
                                          const Thrift& thrift) {
-  std::lock_guard refining(refine_mutex_);
-  const uint64_t before = CellCount();
+  const std::shared_lock building(builders_mutex_);
+  uint64_t certified = 0;
   std::vector<Work> works = CollectUsed(weight, thrift);
   const bool is_limited = thrift.price != nullptr && std::isfinite(thrift.most_work);
   double left = thrift.most_work;
   if (is_limited) Trim(works, thrift, left);
   while (!works.empty()) {
     if (is_limited) AllowDivisions(works, thrift, left);
-    works = Publish(std::move(works), loop, thrift);
+    Certify(works, loop, thrift);
+    works = Publish(std::move(works), thrift, certified);
     for (const Work& child : works) {
       left -= is_limited ? (*thrift.price)(child.object, child.parent) : 0;
     }
   }
-  const uint64_t certified = CellCount() - before;
+  const std::lock_guard evicting(ledger_mutex_);
   Evict();
   return {certified, is_limited ? thrift.most_work - left : 0};
 }
 
 Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
   const SceneChange& change = reach.change();
-  std::scoped_lock refining(refine_mutex_, former.refine_mutex_);
-  std::scoped_lock lock(mutex_, former.mutex_);
+  const std::scoped_lock alone(builders_mutex_, former.builders_mutex_);
+  const std::scoped_lock ledgers(ledger_mutex_, former.ledger_mutex_);
   const uint64_t before = former.store_.cell_count();
   former.memory_bytes_ = 0;
   clock_ = former.clock_.load();
@@ -207,8 +209,8 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
   former.ledger_.Reset();
   if (change.lights) former.store_.Clear();
   store_.Adopt(former.store_, change, memory_bytes_, [&](SurfaceTree& tree) {
-    if (!reach.TouchesShadows(tree.object())) return CellTree<SurfaceTraits>::Pruned();
-    return tree.cells().Prune(
+    if (!reach.TouchesShadows(tree.object())) return;
+    tree.cells().Prune(
         /*covers=*/true, [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });
   });
   store_.Evict(EvictionTarget(memory_bytes_));
@@ -219,25 +221,22 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
 }
 
 void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {
-  std::lock_guard refining(refine_mutex_);
-  {
-    std::unique_lock lock(mutex_);
-    memory_bytes_ = memory_bytes;
-  }
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
+  memory_bytes_ = memory_bytes;
   ledger_.Reset();  // its policy knows another budget
   Evict();
 }
 
 void SurfaceCache::Evict() {
-  ledger_.Evict(store_, std::min(EvictionTarget(memory_bytes_), TreeBudget()), pinned_, mutex_);
+  ledger_.Evict(store_, std::min(EvictionTarget(memory_bytes_), TreeBudget()), pinned_);
   NoteLedger();
 }
 
 void SurfaceCache::EndFrame(const FrameMark& mark) {
-  std::unique_lock refining(refine_mutex_, std::defer_lock);
+  std::unique_lock lock(ledger_mutex_, std::defer_lock);
   if (mark.recorder != nullptr) {
-    refining.lock();
-  } else if (!refining.try_lock()) {
+    lock.lock();
+  } else if (!lock.try_lock()) {
     return;
   }
   ledger_.EndFrame(store_, frame_begin_, EvictionTarget(memory_bytes_), mark);
@@ -247,52 +246,31 @@ void SurfaceCache::EndFrame(const FrameMark& mark) {
 }
 
 void SurfaceCache::SetPolicy(std::string_view name) {
-  std::lock_guard refining(refine_mutex_);
+  const std::lock_guard lock(ledger_mutex_);
   ledger_.SetPolicy(name);
   NoteLedger();
 }
 
-Evicted SurfaceCache::evicted() const {
-  std::shared_lock lock(mutex_);
-  return store_.evicted();
-}
-
-uint64_t SurfaceCache::ByteSize() const {
-  std::shared_lock lock(mutex_);
-  return store_.byte_size();
-}
-
 uint64_t SurfaceCache::CountBytes() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   return store_.CountBytes();
 }
 
-uint64_t SurfaceCache::CellCount() const {
-  std::shared_lock lock(mutex_);
-  return store_.cell_count();
-}
-
-AheadCounts SurfaceCache::ahead() const {
-  std::shared_lock lock(mutex_);
-  return ahead_;
-}
-
 std::vector<TreeSize> SurfaceCache::TreeSizes() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   return store_.TreeSizes();
 }
 
 uint64_t SurfaceCache::TreeCount() const {
-  std::shared_lock lock(mutex_);
+  const EpochGuard reading;
   uint64_t count = 0;
   store_.ForEachTree([&](size_t, const SurfaceTree&) { ++count; });
   return count;
 }
 
 void SurfaceCache::Clear() {
-  std::lock_guard refining(refine_mutex_);
+  const std::scoped_lock alone(builders_mutex_, ledger_mutex_);
   ledger_.Reset();
-  std::unique_lock lock(mutex_);
   store_.Clear();
 }
 

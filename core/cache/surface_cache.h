@@ -2,8 +2,10 @@
 // for every shading point of every request. It depends on nothing but the scene, so all requests
 // share it; answers that use it equal the classical tracer's bit for bit.
 //
-// Thread safety: every method may be called from any thread. Readers share a lock; Refine certifies
-// outside it and takes it to publish.
+// Thread safety: every method may be called from any thread. Readers wait for nobody (epoch.h). So
+// do those who call Refine: each makes the cells that it builds its own first, and passes over what
+// somebody else is building. One at a time books uses and evicts. Adopt, Restore, Clear and
+// SetMemoryBytes wait for those who build.
 #pragma once
 
 #include <atomic>
@@ -18,6 +20,7 @@
 #include "core/cache/cache_options.h"
 #include "core/cache/cell_journal.h"
 #include "core/cache/change_reach.h"
+#include "core/cache/epoch.h"
 #include "core/cache/parallel_loop.h"
 #include "core/cache/tree_store.h"
 #include "core/certify/diffuse_summer.h"
@@ -39,7 +42,7 @@ class SurfaceCache {
   SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double min_uses = kMinSurfaceUses,
                bool uses_functions = true);
 
-  // Holds the lock: keep it short, a part of a frame.
+  // Holds up those who evict: keep it short, a part of a frame. Stays with its thread.
   class Reader : public LightLists {
    public:
     // Diffuse sums are used where they meet `epsilon`; at 0 never. Each hit that Find is asked for
@@ -58,7 +61,7 @@ class SurfaceCache {
     const SurfaceCache& cache_;
     const double epsilon_;
     const uint32_t points_;
-    std::shared_lock<std::shared_mutex> lock_;
+    const EpochGuard guard_;
   };
 
   // Which of the cells that were used are worth their price.
@@ -104,15 +107,15 @@ class SurfaceCache {
   void EndFrame(const FrameMark& mark);
   // As BlockLedger::SetPolicy.
   void SetPolicy(std::string_view name);
-  Evicted evicted() const;
+  Evicted evicted() const { return store_.evicted(); }
   // Bytes beside the trees: of what eviction needs to know.
-  uint64_t LedgerBytes() const { return ledger_bytes_; }
+  uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
   void SetMemoryBytes(uint64_t memory_bytes);
-  uint64_t ByteSize() const;
+  uint64_t ByteSize() const { return store_.byte_size(); }
   uint64_t CountBytes() const;
-  uint64_t CellCount() const;
-  AheadCounts ahead() const;
+  uint64_t CellCount() const { return store_.cell_count(); }
+  AheadCounts ahead() const { return ahead_.now(); }
   uint64_t TreeCount() const;
   std::vector<TreeSize> TreeSizes() const;  // by object
   void Clear();
@@ -127,37 +130,39 @@ class SurfaceCache {
   static void Trim(std::vector<Work>& works, const Thrift& thrift, double& left);
   // Says which of the works may be divided, for what is left.
   static void AllowDivisions(std::vector<Work>& works, const Thrift& thrift, double left);
-  // Certifies what the works ask for and puts it into the trees; the children's works come back.
-  std::vector<Work> Publish(std::vector<Work> works, const ParallelLoop& loop,
-                            const Thrift& thrift);
-  // What trees may take; the rest is the ledger's. Needs refine_mutex_, as the next one.
+  // Certifies what the works ask for.
+  void Certify(std::vector<Work>& works, const ParallelLoop& loop, const Thrift& thrift) const;
+  // Puts that into the trees, which it counts; the children's works come back.
+  std::vector<Work> Publish(std::vector<Work> works, const Thrift& thrift, uint64_t& certified);
+  // What trees may take; the rest is the ledger's.
   uint64_t TreeBudget() const {
-    return memory_bytes_ - std::min(memory_bytes_, ledger_.ByteSize());
+    const uint64_t all = memory_bytes_;
+    return all - std::min<uint64_t>(all, ledger_bytes_);
   }
-  // Down to what a pass leaves.
+  // Down to what a pass leaves. Needs ledger_mutex_, as the next two.
   void Evict();
-  // What is there has been used by no frame yet. Needs refine_mutex_, too.
+  // What is there has been used by no frame yet.
   void BeginAnew();
   // Says how much the ledger takes.
-  void NoteLedger() { ledger_bytes_ = costs_.ByteSize() + ledger_.ByteSize(); }
+  void NoteLedger() { ledger_bytes_ = ledger_.ByteSize(); }
 
   const LightCertifier certifier_;
   const DiffuseSummer summer_;
   const double min_uses_;
   CellJournal* journal_ = nullptr;
-  std::atomic<uint64_t> ledger_bytes_{0};  // not guarded
-  mutable std::mutex refine_mutex_;  // one Refine at a time: nodes stay where they are outside it
-  // Guarded by refine_mutex_:
+  std::atomic<uint64_t> memory_bytes_;
+  std::atomic<uint64_t> ledger_bytes_{0};
+  std::atomic<uint32_t> clock_{1};
+  TreeStore<SurfaceTree> store_;
   BuildCosts costs_;
+  AheadCounters ahead_;
+  // Shared by those who build; who has it alone may change trees as a whole. Taken before the next.
+  mutable std::shared_mutex builders_mutex_;
+  mutable std::mutex ledger_mutex_;
+  // Guarded by ledger_mutex_:
   BlockLedger<SurfaceTree> ledger_;
   uint32_t frame_begin_ = 1;  // the clock when the last frame ended,
   uint32_t pinned_ = 1;       // and when it began
-  mutable std::shared_mutex mutex_;
-  // Guarded by mutex_:
-  uint64_t memory_bytes_;
-  TreeStore<SurfaceTree> store_;
-  AheadCounts ahead_;
-  std::atomic<uint32_t> clock_ = 1;  // not guarded
 };
 
 }  // namespace linetree

@@ -1,10 +1,17 @@
 // The trees of all objects of a scene, of one kind, and the bytes they hold. What surface_cache.h
-// and path_cache.h have in common; whoever owns a store guards it with a lock.
+// and path_cache.h have in common.
 //
-// A Tree has Node, Cell, Tree(const Object&), cells() (cell_tree.h) and CountBytes().
+// A Tree has Node, Cell, Traits, Tree(const Object&), cells() (cell_tree.h), OwnBytes() and
+// CountBytes().
+//
+// Thread safety: Get, Want, ForEachTree and what only looks may run at any time, within an
+// EpochGuard where trees may be taken away meanwhile. Builders (PlantWanted, Publish, Divide) may
+// run at the same time as each other, as readers and as one who evicts (TryTake..., Dispose).
+// Clear, Adopt and Restore need to be the only ones but readers.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <span>
@@ -12,7 +19,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/cache/epoch.h"
+#include "core/math/check.h"
 #include "core/scene/scene_change.h"
+#include "core/tree/cell_tree.h"
 
 namespace linetree {
 
@@ -32,23 +42,24 @@ template <class Tree>
 class TreeStore {
  public:
   using Node = typename Tree::Node;
-  // Who owns this destroys it; that takes a while.
-  struct Removed {
-    std::vector<decltype(Node::children)> children;
-    std::vector<std::unique_ptr<Tree>> trees;
-  };
+  using Children = typename Node::Children;
+  using Counts = CellCounts<typename Tree::Traits>;
 
   // What the store holds for every object of the scene, trees or not, counts as well: where
   // `memory_bytes` have no room for it, there are no trees.
   TreeStore(const Scene& scene, uint64_t memory_bytes) : scene_(scene) { MakeIndex(memory_bytes); }
 
   // Null when the object has no tree.
-  Tree* Get(size_t object) const { return trees_.empty() ? nullptr : trees_[object].get(); }
+  Tree* Get(size_t object) const {
+    const Index* index = index_.get();
+    return index == nullptr ? nullptr : index->trees[object].get();
+  }
 
-  // Readers may not build; asking for a tree is all they do. May run at the same time as itself.
+  // Readers may not build; asking for a tree is all they do.
   void Want(size_t object) const {
-    if (wanted_.empty()) return;
-    std::atomic<bool>& wanted = wanted_[object];
+    const Index* index = index_.get();
+    if (index == nullptr) return;
+    std::atomic<bool>& wanted = index->wanted[object];
     if (!wanted.load(std::memory_order_relaxed)) wanted.store(true, std::memory_order_relaxed);
   }
   // Trees for the objects that readers asked for, as far as `memory_bytes` go: those
@@ -56,9 +67,11 @@ class TreeStore {
   template <class Fn>
   void PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
     MakeIndex(memory_bytes);
-    for (size_t object = 0; object < trees_.size(); ++object) {
-      if (!wanted_[object].exchange(false, std::memory_order_relaxed) || trees_[object]) continue;
-      if (!may_grow(object)) continue;
+    const Index* index = index_.get();
+    if (index == nullptr) return;
+    for (size_t object = 0; object < index->trees.size(); ++object) {
+      if (!index->wanted[object].exchange(false, std::memory_order_relaxed)) continue;
+      if (index->trees[object] || !may_grow(object)) continue;
       if (!Plant(object, memory_bytes)) return;
     }
   }
@@ -69,142 +82,172 @@ class TreeStore {
   bool Restore(size_t object, int root, const typename Tree::Cell& cell,
                std::unique_ptr<const Payload> payload, uint32_t now, uint64_t memory_bytes) {
     MakeIndex(memory_bytes);
-    if (trees_.empty() || (!trees_[object] && !Plant(object, memory_bytes))) return false;
-    auto& cells = trees_[object]->cells();
+    if (!index_ || (Get(object) == nullptr && !Plant(object, memory_bytes))) return false;
+    auto& cells = Get(object)->cells();
     if (root >= cells.roots()) return true;
     Node* node = &cells.Root(root);
     for (int level = 0; level < cell.depth; ++level) {
-      if (node->IsLeaf() && !Divide(*node, now, memory_bytes)) return false;
+      if (node->IsLeaf() && !Divide(object, *node, now, memory_bytes)) return false;
       node = &(*node->children)[static_cast<size_t>(cell.ChildAt(level))];
     }
-    return node->payload || Publish(*node, std::move(payload), memory_bytes);
+    return node->payload || Publish(object, *node, std::move(payload), memory_bytes);
   }
 
-  // Puts what is known of a cell into its node; false, and nothing done, when there is no room.
+  // Puts what is known of a cell, which the caller owns, into its node; false, and nothing done,
+  // when there is no room.
   template <class Payload>
-  bool Publish(Node& node, std::unique_ptr<const Payload> payload, uint64_t memory_bytes) {
-    const uint64_t bytes = Node::BytesOf(payload.get());
-    if (byte_size_ + bytes > memory_bytes) return false;
-    node.payload = std::move(payload);
-    byte_size_ += bytes;
-    ++cells_;
+  bool Publish(size_t object, Node& node, std::unique_ptr<const Payload> payload,
+               uint64_t memory_bytes) {
+    Counts counts;
+    counts.Add(*payload);
+    if (!Reserve(counts.bytes, memory_bytes)) return false;
+    cells_ += 1;
+    Get(object)->cells().Add(counts);
+    LT_CHECK(node.payload.PutFirst(payload));
     return true;
   }
-  // Gives a leaf children; false when there is no room.
-  bool Divide(Node& node, uint32_t now, uint64_t memory_bytes) {
-    if (byte_size_ + sizeof(*node.children) > memory_bytes) return false;
-    node.children = std::make_unique<typename decltype(node.children)::element_type>();
-    byte_size_ += sizeof(*node.children);
+  // Gives a leaf, which the caller owns, children that nobody owns (or the caller, too, with
+  // `owned`); false when there is no room.
+  bool Divide(size_t object, Node& node, uint32_t now, uint64_t memory_bytes, bool owned = false) {
+    if (!Reserve(sizeof(Children), memory_bytes)) return false;
+    auto children = std::make_unique<Children>();
     int c = 0;
-    for (Node& child : *node.children) {
+    for (Node& child : *children) {
       child.cell = node.cell.Child(c++);
       child.root = node.root;
       child.last_used.store(now, std::memory_order_relaxed);
+      child.claimed.store(owned, std::memory_order_relaxed);
     }
+    Counts counts;
+    counts.bytes = sizeof(Children);
+    Get(object)->cells().Add(counts);
+    LT_CHECK(node.children.PutFirst(children));
     return true;
   }
 
-  // Takes back blocks of leaves, those used longest ago first, when there are none left whole
-  // trees, and then all the rest, while the store holds more than `target` bytes.
-  void Evict(uint64_t target) {
-    while (byte_size_ > target) {
-      std::vector<std::pair<uint32_t, Node*>> victims = ParentsOfLeaves();
-      if (victims.empty()) {
-        DropTrees(target);
-        if (byte_size_ > target) Clear();
-        return;
-      }
-      std::stable_sort(victims.begin(), victims.end(),
-                       [](const auto& a, const auto& b) { return a.first < b.first; });
-      Removed removed;
-      for (const auto& [used, node] : victims) {
-        if (byte_size_ <= target) break;
-        TakeChildren(*node, removed);
-      }
-    }
-  }
-  // One block of leaves, which their parent stands for then.
-  void TakeChildren(Node& node, Removed& removed) {
-    uint64_t cells = 0, bytes = sizeof(*node.children);
+  // What has been taken away, which readers may still look at. It counts as held until it is
+  // disposed of.
+  class Removed {
+   public:
+    uint64_t bytes() const { return counts_.bytes; }
+
+   private:
+    friend TreeStore;
+    std::vector<std::unique_ptr<Children>> children_;
+    std::vector<std::unique_ptr<Tree>> trees_;
+    Counts counts_;
+  };
+  // One block of leaves, which their parent stands for then; false, and nothing done, where it has
+  // blocks below it or somebody owns one of its cells.
+  bool TryTakeChildren(size_t object, Node& node, Removed& removed) {
+    Children* children = node.children.get();
+    if (children == nullptr || !TryClaim(*children)) return false;
+    Counts counts;
+    counts.bytes = sizeof(*children);
     uint32_t used = 0;
-    for (const Node& child : *node.children) {
-      bytes += Node::BytesOf(child.payload.get());
-      cells += child.payload ? 1 : 0;
+    for (const Node& child : *children) {
+      if (child.payload) counts.Add(*child.payload);
       used = std::max(used, child.last_used.load(std::memory_order_relaxed));
     }
     node.last_used.store(used, std::memory_order_relaxed);
-    removed.children.push_back(std::move(node.children));
-    CountEvicted(cells, bytes);
+    removed.children_.push_back(node.children.Take());
+    Get(object)->cells().Subtract(counts);
+    removed.counts_ += counts;
+    return true;
   }
-  // The object must have one.
-  void TakeTree(size_t object, Removed& removed) {
-    Tree& tree = *trees_[object];
-    uint64_t cells = 0;
-    tree.cells().ForEach([&](Node& node) { cells += node.payload ? 1 : 0; });
-    CountEvicted(cells, tree.CountBytes());
-    removed.trees.push_back(std::move(trees_[object]));
+  // The object must have one. As above.
+  bool TryTakeTree(size_t object, Removed& removed) {
+    Tree& tree = *Get(object);
+    std::vector<Node*> roots;
+    tree.cells().ForEachRoot([&](Node& root) { roots.push_back(&root); });
+    if (!TryClaimAll(roots)) return false;
+    removed.counts_ += tree.cells().counts();
+    removed.counts_.bytes += tree.OwnBytes();
+    removed.trees_.push_back(index_->trees[object].Take());
+    return true;
+  }
+  // When nobody reads it any more.
+  void Dispose(Removed& removed) {
+    if (removed.children_.empty() && removed.trees_.empty()) return;
+    AwaitReaders();
+    const uint64_t cells = removed.counts_.Cells();
+    Subtract(cells, removed.counts_.bytes);
+    evicted_cells_ += cells;
+    evicted_bytes_ += removed.counts_.bytes;
+    removed = Removed();
+  }
+
+  // Takes back blocks of leaves, those used longest ago first, when there are none left whole
+  // trees, and then all the rest, while the store holds more than `target` bytes: what nobody owns.
+  void Evict(uint64_t target) {
+    Removed removed;
+    const auto is_done = [&] { return byte_size() - removed.bytes() <= target; };
+    for (bool progress = true; progress && !is_done();) {
+      progress = false;
+      for (const Victim& victim : ParentsOfLeaves()) {
+        if (is_done()) break;
+        progress |= TryTakeChildren(victim.object, *victim.node, removed);
+      }
+    }
+    for (const Victim& victim : TreesByUse()) {
+      if (is_done()) break;
+      TryTakeTree(victim.object, removed);
+    }
+    Dispose(removed);
+    if (byte_size() > target && byte_size() == IndexBytes()) Clear();
   }
 
   // Takes the trees of a former scene's store over, for the objects that are still there and not
-  // altered, without what prune(Tree&) takes out of them, which it returns (CellTree::Pruned). The
+  // altered, without what prune(Tree&) takes out of them, which it returns (CellTree::Prune). The
   // former store is empty afterwards, this one was before. The budget is the caller's affair.
   // Renumber(now, Payload&) -> false where what it names is gone.
   template <class Fn>
   void Adopt(TreeStore& former, const SceneChange& change, uint64_t memory_bytes, Fn&& prune) {
+    const std::unique_ptr<Index> old = former.TakeIndex();
     MakeIndex(memory_bytes);
-    cells_ += former.cells_;
-    byte_size_ += former.byte_size_ - former.IndexBytes();
-    for (size_t object = 0; object < former.trees_.size(); ++object) {
+    if (!old || !index_) return;
+    for (size_t object = 0; object < old->trees.size(); ++object) {
       const int32_t now = change.now[object];
-      if (!former.trees_[object]) continue;
-      Tree& old = *former.trees_[object];
-      if (trees_.empty() || now == SceneChange::kGone || change.altered[object]) {
-        byte_size_ -= old.CountBytes();
-        Subtract(old.cells().Prune(false, [](const Node&) { return true; }).cells, 0);
-        continue;
-      }
+      if (!old->trees[object] || now == SceneChange::kGone || change.altered[object]) continue;
       auto tree = std::make_unique<Tree>(scene_.objects[static_cast<size_t>(now)]);
-      tree->cells() = std::move(old.cells());
-      const auto pruned = prune(*tree);
-      Subtract(pruned.cells, pruned.bytes);
+      tree->cells() = std::move(old->trees[object]->cells());
+      prune(*tree);
       if (!change.keeps_indices) {
-        const auto lost = tree->cells().Prune(
-            false, [&](const Node& node) { return !RenumberPayload(change.now, node); });
-        Subtract(lost.cells, lost.bytes);
+        tree->cells().Prune(false,
+                            [&](const Node& node) { return !RenumberPayload(change.now, node); });
       }
-      trees_[static_cast<size_t>(now)] = std::move(tree);
+      const Counts counts = tree->cells().counts();
+      cells_ += counts.Cells();
+      byte_size_ += tree->OwnBytes() + counts.bytes;
+      LT_CHECK(index_->trees[static_cast<size_t>(now)].PutFirst(tree));
     }
-    former.Clear();
   }
 
-  void Clear() {
-    trees_ = std::vector<std::unique_ptr<Tree>>();
-    wanted_ = std::vector<std::atomic<bool>>();
-    byte_size_ = 0;
-    cells_ = 0;
-  }
+  void Clear() { TakeIndex(); }
 
   // visit(size_t object, Tree&).
   template <class Fn>
   void ForEachTree(Fn&& visit) const {
-    for (size_t object = 0; object < trees_.size(); ++object) {
-      if (trees_[object]) visit(object, *trees_[object]);
+    const Index* index = index_.get();
+    if (index == nullptr) return;
+    for (size_t object = 0; object < index->trees.size(); ++object) {
+      if (Tree* tree = index->trees[object].get()) visit(object, *tree);
     }
   }
 
-  // By object; counted anew.
+  // By object.
   std::vector<TreeSize> TreeSizes() const {
     std::vector<TreeSize> sizes(scene_.objects.size());
     ForEachTree([&](size_t object, Tree& tree) {
-      sizes[object].bytes = tree.CountBytes();
-      tree.cells().ForEach([&](Node& node) { sizes[object].cells += node.payload ? 1 : 0; });
+      const Counts counts = tree.cells().counts();
+      sizes[object] = {counts.Cells(), tree.OwnBytes() + counts.bytes};
     });
     return sizes;
   }
 
   uint64_t byte_size() const { return byte_size_; }
   // Since the store was made.
-  const Evicted& evicted() const { return evicted_; }
+  Evicted evicted() const { return {evicted_cells_, evicted_bytes_}; }
   uint64_t cell_count() const { return cells_; }
   uint64_t CountBytes() const {
     uint64_t bytes = IndexBytes();
@@ -213,80 +256,113 @@ class TreeStore {
   }
 
  private:
-  // False when there is no room.
-  bool Plant(size_t object, uint64_t memory_bytes) {
-    auto tree = std::make_unique<Tree>(scene_.objects[object]);
-    const uint64_t bytes = tree->CountBytes();
-    if (byte_size_ + bytes > memory_bytes) return false;
-    trees_[object] = std::move(tree);
-    byte_size_ += bytes;
+  struct Index {
+    explicit Index(size_t objects) : trees(objects), wanted(objects) {}
+    std::vector<OwningSlot<Tree>> trees;            // by object
+    mutable std::vector<std::atomic<bool>> wanted;  // by object: a reader found no tree
+  };
+  struct Victim {
+    uint32_t used = 0;
+    size_t object = 0;
+    Node* node = nullptr;
+  };
+
+  bool Reserve(uint64_t bytes, uint64_t memory_bytes) {
+    uint64_t held = byte_size_.load();
+    do {
+      if (held + bytes > memory_bytes) return false;
+    } while (!byte_size_.compare_exchange_weak(held, held + bytes));
     return true;
-  }
-  void MakeIndex(uint64_t memory_bytes) {
-    const size_t objects = scene_.objects.size();
-    if (!trees_.empty() || objects * (sizeof(trees_[0]) + sizeof(wanted_[0])) > memory_bytes)
-      return;
-    trees_.resize(objects);
-    wanted_ = std::vector<std::atomic<bool>>(objects);
-    byte_size_ += IndexBytes();
-  }
-  uint64_t IndexBytes() const {
-    return trees_.capacity() * sizeof(trees_[0]) + wanted_.capacity() * sizeof(wanted_[0]);
-  }
-  std::vector<std::pair<uint32_t, Node*>> ParentsOfLeaves() const {
-    std::vector<std::pair<uint32_t, Node*>> parents;
-    ForEachTree([&](size_t, Tree& tree) {
-      tree.cells().ForEach([&](Node& node) {
-        if (!node.children) return;
-        uint32_t used = 0;
-        for (const Node& child : *node.children) {
-          if (!child.IsLeaf()) return;
-          used = std::max(used, child.last_used.load(std::memory_order_relaxed));
-        }
-        parents.emplace_back(used, &node);
-      });
-    });
-    return parents;
-  }
-  static bool RenumberPayload(std::span<const int32_t> now, const Node& node) {
-    using Payload = std::remove_const_t<typename decltype(node.payload)::element_type>;
-    // Nobody else holds it: it may change before anybody sees it again.
-    return Renumber(now, const_cast<Payload&>(*node.payload));
   }
   void Subtract(uint64_t cells, uint64_t bytes) {
     cells_ -= cells;
     byte_size_ -= bytes;
   }
-  // Of trees without children, those used longest ago first.
-  void DropTrees(uint64_t target) {
-    std::vector<std::pair<uint32_t, size_t>> order;
+  // False when there is no room.
+  bool Plant(size_t object, uint64_t memory_bytes) {
+    auto tree = std::make_unique<Tree>(scene_.objects[object]);
+    const uint64_t bytes = tree->OwnBytes();
+    if (!Reserve(bytes, memory_bytes)) return false;
+    if (!index_->trees[object].PutFirst(tree)) byte_size_ -= bytes;
+    return true;
+  }
+  void MakeIndex(uint64_t memory_bytes) {
+    if (index_ || BytesOfIndex() > memory_bytes) return;
+    auto index = std::make_unique<Index>(scene_.objects.size());
+    if (index_.PutFirst(index)) byte_size_ += BytesOfIndex();
+  }
+  // With all trees, when nobody reads them any more.
+  std::unique_ptr<Index> TakeIndex() {
+    std::unique_ptr<Index> index = index_.Take();
+    if (index) AwaitReaders();
+    byte_size_ = 0;
+    cells_ = 0;
+    return index;
+  }
+  uint64_t BytesOfIndex() const {
+    return scene_.objects.size() * (sizeof(Index::trees[0]) + sizeof(Index::wanted[0]));
+  }
+  uint64_t IndexBytes() const { return index_ ? BytesOfIndex() : 0; }
+
+  // All leaves, or none.
+  static bool TryClaimAll(std::span<Node* const> nodes) {
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i]->Claim()) {
+        if (nodes[i]->IsLeaf()) continue;
+        nodes[i]->Release();
+      }
+      while (i > 0) nodes[--i]->Release();
+      return false;
+    }
+    return true;
+  }
+  static bool TryClaim(Children& children) {
+    std::array<Node*, std::tuple_size_v<Children>> nodes;
+    for (size_t c = 0; c < nodes.size(); ++c) nodes[c] = &children[c];
+    return TryClaimAll(nodes);
+  }
+
+  static bool IsUsedEarlier(const Victim& a, const Victim& b) { return a.used < b.used; }
+  std::vector<Victim> ParentsOfLeaves() const {
+    std::vector<Victim> parents;
+    ForEachTree([&](size_t object, Tree& tree) {
+      tree.cells().ForEach([&](Node& node) {
+        const Children* children = node.children.get();
+        if (children == nullptr) return;
+        uint32_t used = 0;
+        for (const Node& child : *children) {
+          if (!child.IsLeaf()) return;
+          used = std::max(used, child.last_used.load(std::memory_order_relaxed));
+        }
+        parents.push_back({used, object, &node});
+      });
+    });
+    std::stable_sort(parents.begin(), parents.end(), IsUsedEarlier);
+    return parents;
+  }
+  std::vector<Victim> TreesByUse() const {
+    std::vector<Victim> trees;
     ForEachTree([&](size_t object, Tree& tree) {
       uint32_t used = 0;
-      tree.cells().ForEach([&](Node& node) {
-        used = std::max(used, node.last_used.load(std::memory_order_relaxed));
+      tree.cells().ForEachRoot([&](Node& root) {
+        used = std::max(used, root.last_used.load(std::memory_order_relaxed));
       });
-      order.emplace_back(used, object);
+      trees.push_back({used, object});
     });
-    std::sort(order.begin(), order.end());
-    for (const auto& [used, object] : order) {
-      if (byte_size_ <= target) return;
-      Removed removed;
-      TakeTree(object, removed);
-    }
+    std::stable_sort(trees.begin(), trees.end(), IsUsedEarlier);
+    return trees;
   }
-  void CountEvicted(uint64_t cells, uint64_t bytes) {
-    Subtract(cells, bytes);
-    evicted_.cells += cells;
-    evicted_.bytes += bytes;
+  static bool RenumberPayload(std::span<const int32_t> now, const Node& node) {
+    using Payload = std::remove_const_t<std::remove_reference_t<decltype(*node.payload)>>;
+    // Nobody else holds it: it may change before anybody sees it again.
+    return Renumber(now, const_cast<Payload&>(*node.payload));
   }
 
   const Scene& scene_;
-  // Empty where there is no room for them:
-  std::vector<std::unique_ptr<Tree>> trees_;       // by object
-  mutable std::vector<std::atomic<bool>> wanted_;  // by object: a reader found no tree
-  uint64_t byte_size_ = 0;
-  uint64_t cells_ = 0;
-  Evicted evicted_;
+  OwningSlot<Index> index_;  // empty where there is no room for it
+  std::atomic<uint64_t> byte_size_{0};
+  std::atomic<uint64_t> cells_{0};
+  std::atomic<uint64_t> evicted_cells_{0}, evicted_bytes_{0};
 };
 
 // A pass of eviction frees an eighth of the budget.

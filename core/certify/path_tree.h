@@ -15,6 +15,8 @@ struct PathTraits {
   using Payload = CellPaths;
   static constexpr size_t kChildren = kCellChildren;
   static constexpr int kMaxDepth = kMaxCellDepth;
+  static constexpr size_t kKinds = kVerdictCount;
+  static size_t KindOf(const Payload& paths) { return static_cast<size_t>(paths.verdict); }
 };
 using PathNode = CellTreeNode<PathTraits>;
 
@@ -31,6 +33,7 @@ inline constexpr double kMaxHitDistance = 4096;
 
 class PathTree {
  public:
+  using Traits = PathTraits;
   using Node = PathNode;
   using Cell = CellId;
 
@@ -56,7 +59,7 @@ class PathTree {
     return PathCoords{pair, *coords};
   }
 
-  uint64_t CountBytes() const { return sizeof(PathTree) - sizeof(cells_) + cells_.CountBytes(); }
+  uint64_t CountBytes() const { return OwnBytes() + cells_.Recount().bytes; }
   uint64_t OwnBytes() const {  // without what cells know and their children
     return sizeof(PathTree) - sizeof(cells_) + cells_.OwnBytes();
   }

@@ -141,12 +141,13 @@ class CachedLights {
       LaneMask same = LanesIn(entry) & left;
       left &= ~same;
       if (!skipped_) entry.uses += static_cast<uint32_t>(std::popcount(same));
-      if (is_booked_) booking_.AddCell(node.payload.get());
-      if (node.payload == nullptr) {
+      const CellLights* known = node.payload.get();
+      if (is_booked_) booking_.AddCell(known);
+      if (known == nullptr) {
         unknown_ |= same;
         continue;
       }
-      for (const Contact& contact : node.payload->contacts) {
+      for (const Contact& contact : known->contacts) {
         const Doubles height =
             Dot(Load(hits.point) - Spread(contact.plane.point), Spread(contact.plane.normal));
         const LaneMask clear = BitsOf(height > Doubles::All(contact.clearance));

@@ -11,20 +11,31 @@
 namespace linetree {
 namespace {
 
+// Whoever finds a cell tried, or children, finds what was stored before.
 uint32_t LoadState(CellNode& node) {
-  return std::atomic_ref<uint32_t>(node.state).load(std::memory_order_relaxed);
+  return std::atomic_ref<uint32_t>(node.state).load(std::memory_order_acquire);
+}
+void StoreState(CellNode& node, uint32_t state) {
+  std::atomic_ref<uint32_t>(node.state).store(state, std::memory_order_release);
+}
+uint32_t LoadChildren(CellNode& node) {
+  return std::atomic_ref<uint32_t>(node.children).load(std::memory_order_acquire);
+}
+void StoreChildren(CellNode& node, uint32_t children) {
+  std::atomic_ref<uint32_t>(node.children).store(children, std::memory_order_release);
 }
 Verdict VerdictOf(uint32_t state) { return static_cast<Verdict>(state & 15); }
-bool IsTried(const CellNode& node) { return VerdictOf(node.state) != Verdict::kUntried; }
+bool IsTried(CellNode& node) { return VerdictOf(LoadState(node)) != Verdict::kUntried; }
 uint32_t StateOf(Verdict verdict, uint32_t now) {
   return static_cast<uint32_t>(verdict) | (now & kStampMask) << 4;
 }
 
-// The verdict shares the word and does not change while readers are about.
+// The verdict shares the word: a cell that has been evicted meanwhile stays so.
 void Touch(CellNode& node, uint32_t state, uint32_t now) {
   const uint32_t fresh = StateOf(VerdictOf(state), now);
   if (fresh == state) return;
-  std::atomic_ref<uint32_t>(node.state).store(fresh, std::memory_order_relaxed);
+  std::atomic_ref<uint32_t>(node.state)
+      .compare_exchange_strong(state, fresh, std::memory_order_relaxed);
 }
 
 }  // namespace
@@ -50,14 +61,15 @@ Lookup Linetree::Find(const RayCoords& coords, double epsilon, int max_depth, ui
       Touch(*node, state, now);
       return found;
     }
-    if (depth == max_depth || node->children == 0) Touch(*node, state, now);
+    const uint32_t children = LoadChildren(*node);
+    if (depth == max_depth || children == 0) Touch(*node, state, now);
     if (depth == max_depth) return found;
-    if (node->children == 0) {
+    if (children == 0) {
       found.kind = Lookup::Kind::kUnbuilt;
       found.cell = CellAt(coords, depth + 1);
       return found;
     }
-    node = &pools_->blocks[node->children].child[static_cast<size_t>(deepest.ChildAt(depth))];
+    node = &pools_->blocks[children].child[static_cast<size_t>(deepest.ChildAt(depth))];
   }
 }
 
@@ -68,22 +80,23 @@ bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t 
     CellNode& parent = At(at);
     if (!IsTried(parent)) return false;
     if (parent.children == 0) {
-      parent.children = pools_->blocks.Allocate();
-      CellBlock& block = pools_->blocks[parent.children];
+      const uint32_t children = pools_->blocks.Allocate();
+      CellBlock& block = pools_->blocks[children];
       block.parent_block = at.block;
       block.parent_child = at.child;
+      StoreChildren(parent, children);
     }
     at = {parent.children, static_cast<uint32_t>(cell.ChildAt(depth))};
   }
   CellNode& node = At(at);
   if (IsTried(node)) return false;
-  node.state = StateOf(judgement.verdict, now);
   if (judgement.verdict == Verdict::kCertified) {
     node.spread = std::nextafter(static_cast<float>(judgement.spread),
                                  std::numeric_limits<float>::infinity());
     node.interpolant = pools_->interpolants.Allocate();
     pools_->interpolants[node.interpolant] = judgement.interpolant;
   }
+  StoreState(node, StateOf(judgement.verdict, now));
   ++cell_count_;
   ++verdicts_[static_cast<size_t>(judgement.verdict)];
   return true;
@@ -91,7 +104,7 @@ bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t 
 
 bool Linetree::HasTriedChild(const CellNode& node) const {
   if (node.children == 0) return false;
-  const auto& children = pools_->blocks[node.children].child;
+  auto& children = pools_->blocks[node.children].child;
   return std::any_of(children.begin(), children.end(), IsTried);
 }
 
@@ -108,8 +121,8 @@ void Linetree::ForEachBlock(const std::function<void(uint32_t block)>& visit) co
 
 void Linetree::ForEachLeaf(const std::function<void(CellHandle, uint32_t)>& visit) const {
   const auto visit_if_leaf = [&](CellHandle handle) {
-    const CellNode& node = At(handle);
-    if (IsTried(node) && !HasTriedChild(node)) visit(handle, node.state >> 4);
+    CellNode& node = At(handle);
+    if (IsTried(node) && !HasTriedChild(node)) visit(handle, LoadState(node) >> 4);
   };
   visit_if_leaf({});
   ForEachBlock([&](uint32_t block) {
@@ -117,19 +130,31 @@ void Linetree::ForEachLeaf(const std::function<void(CellHandle, uint32_t)>& visi
   });
 }
 
-void Linetree::EvictLeaf(CellHandle leaf) {
+void Linetree::EvictLeaf(CellHandle leaf, RetiredCells& retired) {
   CellNode& node = At(leaf);
   LT_CHECK(IsTried(node) && node.children == 0);
   --cell_count_;
-  --verdicts_[static_cast<size_t>(VerdictOf(node.state))];
-  if (node.interpolant != 0) pools_->interpolants.Free(node.interpolant);
-  node = CellNode{};
+  --verdicts_[static_cast<size_t>(VerdictOf(LoadState(node)))];
+  StoreState(node, StateOf(Verdict::kUntried, 0));
+  if (node.interpolant != 0) {
+    retired.interpolants.push_back(node.interpolant);
+    retired.nodes.push_back(&node);
+  }
   if (leaf.block == 0) return;
   const CellBlock& block = pools_->blocks[leaf.block];
   CellNode& parent = At({block.parent_block, block.parent_child});
   if (HasTriedChild(parent)) return;
-  pools_->blocks.Free(parent.children);
-  parent.children = 0;
+  retired.blocks.push_back(parent.children);
+  StoreChildren(parent, 0);
+}
+
+void CellPools::Free(const RetiredCells& retired) {
+  for (CellNode* node : retired.nodes) {
+    node->interpolant = 0;
+    node->spread = 0;
+  }
+  for (const uint32_t interpolant : retired.interpolants) interpolants.Free(interpolant);
+  for (const uint32_t block : retired.blocks) blocks.Free(block);
 }
 
 void Linetree::Clear() {

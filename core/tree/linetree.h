@@ -1,13 +1,14 @@
 // A linetree: the lazily built tree of 4D cells of one object and face pair (paper section 6).
 //
-// Thread safety: Find may run at the same time as itself (it marks cells as used with a relaxed
-// atomic store), but not at the same time as a method that changes any tree on the same pools. The
-// owner holds the lock.
+// Thread safety: Find may run at any time but with Clear. Of the methods that change trees on the
+// same pools, or look at whole trees, one may run at a time. What EvictLeaf takes out may be freed
+// when nobody reads it any more.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "core/tree/cell.h"
 #include "core/tree/interpolant.h"
@@ -32,6 +33,16 @@ struct CellBlock {
   uint32_t parent_child = 0;
 };
 
+// What has been taken out of trees and may still be read.
+struct RetiredCells {
+  std::vector<uint32_t> blocks, interpolants;  // handles
+  std::vector<CellNode*> nodes;                // that had the interpolants
+
+  uint64_t ByteSize() const {
+    return blocks.size() * sizeof(CellBlock) + interpolants.size() * sizeof(Interpolant);
+  }
+};
+
 // Memory that all trees of a cache share.
 struct CellPools {
   SlabPool<CellBlock> blocks;
@@ -40,6 +51,8 @@ struct CellPools {
   uint64_t ByteSize() const {
     return blocks.in_use() * sizeof(CellBlock) + interpolants.in_use() * sizeof(Interpolant);
   }
+  // When nobody reads them any more, and before anything else changes.
+  void Free(const RetiredCells& retired);
 };
 
 // What a walk for one ray found.
@@ -52,7 +65,7 @@ struct Lookup {
   Kind kind = Kind::kGiveUp;
   Verdict verdict = Verdict::kUntried;  // of the last cell that was tried on the way
   CellId cell;
-  const Interpolant* interpolant = nullptr;  // valid until a tree on the same pools changes
+  const Interpolant* interpolant = nullptr;  // valid until what was evicted meanwhile is freed
 };
 
 // A cell of one tree, as eviction names it.
@@ -78,7 +91,7 @@ class Linetree {
   void ForEachLeaf(const std::function<void(CellHandle, uint32_t last_used)>& visit) const;
 
   // Forgets a leaf, and its block of siblings when it was the last tried one among them.
-  void EvictLeaf(CellHandle leaf);
+  void EvictLeaf(CellHandle leaf, RetiredCells& retired);
 
   void Clear();
 

@@ -2,9 +2,12 @@
 // before new memory is taken, so the memory held is the largest that was ever in use at once,
 // rounded up to a slab.
 //
-// Thread safety: none; operator[] may run at the same time as itself.
+// Thread safety: operator[] may run at any time, for handles that are in use; everything else needs
+// exclusive access.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -27,7 +30,7 @@ class SlabPool {
       (*this)[handle] = T{};
       return handle;
     }
-    if (next_ % kSlabRecords == 0) slabs_.push_back(std::make_unique<T[]>(kSlabRecords));
+    if (next_ % kSlabRecords == 0) AddSlab();
     return ++next_;
   }
   void Free(uint32_t handle) {
@@ -36,12 +39,29 @@ class SlabPool {
     --in_use_;
   }
   T& operator[](uint32_t handle) const {
-    return slabs_[(handle - 1) / kSlabRecords][(handle - 1) % kSlabRecords];
+    T** slabs = index_.load(std::memory_order_acquire);
+    return slabs[(handle - 1) / kSlabRecords][(handle - 1) % kSlabRecords];
   }
   uint64_t in_use() const { return in_use_; }
 
  private:
+  // Who reads may still look at a former index, which therefore stays; each is twice as long as the
+  // one before.
+  void AddSlab() {
+    slabs_.push_back(std::make_unique<T[]>(kSlabRecords));
+    if (indices_.empty() || slabs_.size() > index_slots_) {
+      index_slots_ = std::max<size_t>(16, 2 * index_slots_);
+      indices_.push_back(std::make_unique<T*[]>(index_slots_));
+      for (size_t i = 0; i + 1 < slabs_.size(); ++i) indices_.back()[i] = slabs_[i].get();
+    }
+    indices_.back()[slabs_.size() - 1] = slabs_.back().get();
+    index_.store(indices_.back().get(), std::memory_order_release);
+  }
+
   std::vector<std::unique_ptr<T[]>> slabs_;
+  std::vector<std::unique_ptr<T*[]>> indices_;
+  std::atomic<T**> index_{nullptr};  // the last of indices_
+  size_t index_slots_ = 0;
   std::vector<uint32_t> free_;
   uint32_t next_ = 0;
   uint64_t in_use_ = 0;

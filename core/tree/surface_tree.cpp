@@ -25,26 +25,30 @@ KnownLights SurfaceTree::Find(const Hit& hit, double epsilon, uint32_t now, uint
   if (!chart_.IsOn(hit.face, hit.point)) return known;
   const SurfacePoint point = chart_.Locate(hit.face, hit.point);
   const SurfaceNode& node = cells_.Find(point.patch, CellAt(point, kMaxSurfaceDepth), now);
-  node.uses.fetch_add(points, std::memory_order_relaxed);
-  if (!node.payload || !node.payload->HoldAt(hit.point)) return known;
-  known.lists = node.payload->lights.data();
+  const CellLights* lights = node.payload.get();
+  // Many threads meet in few cells: what nobody asks is not counted.
+  if (lights == nullptr || lights->WantsSmaller() || node.ahead.load(std::memory_order_relaxed)) {
+    node.uses.fetch_add(points, std::memory_order_relaxed);
+  }
+  if (lights == nullptr || !lights->HoldAt(hit.point)) return known;
+  known.lists = lights->lights.data();
   const double scale = std::ldexp(1.0, node.cell.depth);
   const double s = std::clamp(point.u * scale - node.cell.i, 0.0, 1.0);
   const double t = std::clamp(point.v * scale - node.cell.j, 0.0, 1.0);
-  if (node.payload->HasFunctions()) {
-    known.shadows = &node.payload->shadows;
+  if (lights->HasFunctions()) {
+    known.shadows = &lights->shadows;
     known.s = static_cast<float>(s);
     known.t = static_cast<float>(t);
   }
-  if (epsilon > 0) AddDiffuse(hit, s, t, node, epsilon, known);
+  if (epsilon > 0) AddDiffuse(hit, s, t, *lights, epsilon, known);
   return known;
 }
 
-void SurfaceTree::AddDiffuse(const Hit& hit, double s, double t, const SurfaceNode& node,
+void SurfaceTree::AddDiffuse(const Hit& hit, double s, double t, const CellLights& lights,
                              double epsilon, KnownLights& known) const {
-  const auto& sums = node.payload->sums;
+  const auto& sums = lights.sums;
   if (!sums[0] && !sums[1]) return;
-  if (node.payload->CountSummed() < kMinLightsWorthASum) return;
+  if (lights.CountSummed() < kMinLightsWorthASum) return;
   const auto side = SideOf(hit);
   if (!side || !sums[*side] || !(sums[*side]->spread <= epsilon)) return;
   known.has_diffuse = true;
@@ -65,8 +69,6 @@ uint64_t SurfaceTree::OwnBytes() const {
          forms_.capacity() * sizeof(SurfaceChart::FaceForm) + cells_.OwnBytes();
 }
 
-uint64_t SurfaceTree::CountBytes() const {
-  return OwnBytes() - cells_.OwnBytes() + cells_.CountBytes();
-}
+uint64_t SurfaceTree::CountBytes() const { return OwnBytes() + cells_.Recount().bytes; }
 
 }  // namespace linetree

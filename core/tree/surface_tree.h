@@ -17,11 +17,14 @@ struct SurfaceTraits {
   using Payload = CellLights;
   static constexpr size_t kChildren = 4;
   static constexpr int kMaxDepth = kMaxSurfaceDepth;
+  static constexpr size_t kKinds = 1;
+  static size_t KindOf(const Payload&) { return 0; }
 };
 using SurfaceNode = CellTreeNode<SurfaceTraits>;
 
 class SurfaceTree {
  public:
+  using Traits = SurfaceTraits;
   using Node = SurfaceNode;
   using Cell = SurfaceCell;
 
@@ -43,7 +46,7 @@ class SurfaceTree {
 
  private:
   // (s, t): the hit's coordinates in the cell.
-  void AddDiffuse(const Hit& hit, double s, double t, const SurfaceNode& node, double epsilon,
+  void AddDiffuse(const Hit& hit, double s, double t, const CellLights& lights, double epsilon,
                   KnownLights& known) const;
 
   // Which of the sums holds at a hit; nothing for inner sides, and where a grazing ray's normal has

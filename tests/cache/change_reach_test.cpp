@@ -28,7 +28,8 @@ struct MirrorCell {
     paths->objects = {1};
     paths->steps[1].candidates = paths->objects;
     if (interpolates) paths->interpolant = std::make_unique<Interpolant>();
-    node.payload = std::move(paths);
+    std::unique_ptr<const CellPaths> known = std::move(paths);
+    node.payload.PutFirst(known);
   }
   PathTree tree;
   PathNode& node;

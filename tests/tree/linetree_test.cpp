@@ -91,7 +91,12 @@ TEST(LinetreeTest, LeavesGoBeforeParentsAndBytesAddUp) {
     std::vector<CellHandle> leaves;
     tree.ForEachLeaf([&](CellHandle leaf, uint32_t) { leaves.push_back(leaf); });
     ASSERT_FALSE(leaves.empty());
-    for (const CellHandle& leaf : leaves) tree.EvictLeaf(leaf);
+    const uint64_t before = pools.ByteSize();
+    RetiredCells retired;
+    for (const CellHandle& leaf : leaves) tree.EvictLeaf(leaf, retired);
+    ASSERT_EQ(pools.ByteSize(), before) << "somebody may still read them";
+    pools.Free(retired);
+    ASSERT_EQ(pools.ByteSize(), before - retired.ByteSize());
     ASSERT_EQ(pools.ByteSize(), tree.CountBytes());
   }
   EXPECT_EQ(pools.ByteSize(), 0u);
