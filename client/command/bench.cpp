@@ -11,6 +11,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   AddBenchCertify(*app, commands);
   AddBenchEdit(*app, commands);
   AddBenchError(*app, commands);
+  AddBenchLookups(*app, commands);
   AddBenchPaper(*app, commands);
   AddBenchPeers(*app, commands);
   AddBenchPolicies(*app, commands);

@@ -49,6 +49,7 @@ void AddBenchAudit(CLI::App& bench, Commands& commands);
 void AddBenchCertify(CLI::App& bench, Commands& commands);
 void AddBenchEdit(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);
+void AddBenchLookups(CLI::App& bench, Commands& commands);
 void AddBenchPaper(CLI::App& bench, Commands& commands);
 void AddBenchPeers(CLI::App& bench, Commands& commands);
 void AddBenchPolicies(CLI::App& bench, Commands& commands);
