@@ -80,6 +80,8 @@ bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t 
     CellNode& parent = At(at);
     if (!IsTried(parent)) return false;
     if (parent.children == 0) {
+      // Evicted further up: a block that nothing comes into is never one of leaves.
+      if (depth + 1 < cell.depth) return false;
       const uint32_t children = pools_->blocks.Allocate();
       CellBlock& block = pools_->blocks[children];
       block.parent_block = at.block;

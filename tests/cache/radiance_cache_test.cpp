@@ -199,5 +199,52 @@ TEST_F(RadianceCacheTest, ManyThreadsMayBuildEvictAndAsk) {
   EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
 }
 
+// Interpolants come and go in the same memory: nobody reads one that is another's by now.
+TEST_F(RadianceCacheTest, ReadersSeeNothingOfWhatIsEvictedUnderThem) {
+  CacheOptions options;
+  options.memory_bytes = 60'000;
+  RadianceCache cache(tracer_, options);
+  test::Random random(60);
+  std::vector<CellQuery> queries;
+  while (queries.size() < 400) {
+    if (const auto query = RandomQuery(cache, random)) queries.push_back(*query);
+  }
+  std::atomic<bool> stops{false};
+  std::atomic<uint64_t> answers{0}, odd{0};
+  std::vector<std::thread> readers;
+  for (int t = 0; t < 2; ++t) {
+    readers.emplace_back([&] {
+      std::vector<CellAnswer> found(queries.size());
+      while (!stops) {
+        cache.Find(cache.Open({}), 0.5, queries, found);
+        for (const CellAnswer& answer : found) {
+          if (answer.kind != Lookup::Kind::kAnswer) continue;
+          ++answers;
+          for (int c = 0; c < 3; ++c) {
+            if (!(answer.radiance[c] >= 0 && answer.radiance[c] < 10)) ++odd;
+          }
+        }
+      }
+    });
+  }
+  uint64_t evicted = 0;
+  std::vector<CellAnswer> found(queries.size());
+  for (int round = 0; round < 150 || answers < 1000; ++round) {
+    const auto session = cache.Open({});
+    const size_t first = queries.size() / 8 * static_cast<size_t>(round % 8);
+    cache.Find(session, 0.5, queries, found);
+    for (size_t i = first; i < first + queries.size() / 8; ++i) {
+      if (found[i].kind != Lookup::Kind::kUnbuilt) continue;
+      const CellRef ref{queries[i].object, queries[i].pair, found[i].cell};
+      evicted += cache.Build(session, {&ref, 1}, kSerial).cells_evicted;
+    }
+  }
+  stops = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(odd, 0u);
+  EXPECT_GT(evicted, 100u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+}
+
 }  // namespace
 }  // namespace linetree

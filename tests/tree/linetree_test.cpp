@@ -72,6 +72,18 @@ TEST(LinetreeTest, ACellIsPublishedOnce) {
   EXPECT_EQ(tree.cell_count(), 1u);
 }
 
+// What is left behind by a cell that comes too late would never be a leaf.
+TEST(LinetreeTest, ACellWhoseParentsAreGoneLeavesNothingBehind) {
+  CellPools pools;
+  Linetree tree(pools);
+  tree.Publish(CellId{}, Refused(Verdict::kGap), 1);
+  EXPECT_FALSE(tree.Publish(CellAt(kPoint, 2), Refused(Verdict::kGap), 1));
+  EXPECT_EQ(pools.ByteSize(), 0u);
+  RetiredCells retired;
+  tree.ForEachLeaf([&](CellHandle leaf, uint32_t) { tree.EvictLeaf(leaf, retired); });
+  EXPECT_EQ(tree.cell_count(), 0u);
+}
+
 TEST(LinetreeTest, LeavesGoBeforeParentsAndBytesAddUp) {
   CellPools pools;
   Linetree tree(pools);
