@@ -14,6 +14,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,27 @@ class MemoryStream : public Imf::OStream {
 
  private:
   std::string bytes_;
+  size_t position_ = 0;
+};
+
+// OpenEXR throws at the end of a file that is too short.
+class MemoryReader : public Imf::IStream {
+ public:
+  explicit MemoryReader(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  bool read(char c[], int n) override {
+    const size_t size = static_cast<size_t>(n);
+    if (position_ > bytes_.size() || size > bytes_.size() - position_) {
+      throw std::runtime_error("unexpected end of file");
+    }
+    std::memcpy(c, bytes_.data() + position_, size);
+    position_ += size;
+    return position_ < bytes_.size();
+  }
+  uint64_t tellg() override { return position_; }
+  void seekg(uint64_t position) override { position_ = position; }
+
+ private:
+  const std::string& bytes_;
   size_t position_ = 0;
 };
 
@@ -166,8 +188,7 @@ absl::Status UnpackLayers(const UintLayers& layers, Frame& frame) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Frame> DecodeExr(const std::string& path) {
-  Imf::InputFile file(path.c_str());
+absl::StatusOr<Frame> Decode(Imf::InputFile& file) {
   const Imf::Header& header = file.header();
   const Imath::Box2i window = header.dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1;
@@ -241,6 +262,16 @@ absl::Status WriteExr(const Frame& frame, const std::string& path) {
   return WriteFileAtomically(path, EncodeExr(frame));
 }
 
+absl::StatusOr<Frame> DecodeExr(const std::string& bytes) {
+  try {
+    MemoryReader reader(bytes);
+    Imf::InputFile file(reader);
+    return Decode(file);
+  } catch (const std::exception& e) {
+    return absl::InvalidArgumentError(absl::StrCat("expected an OpenEXR file: ", e.what()));
+  }
+}
+
 absl::StatusOr<Frame> ReadExr(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -248,7 +279,8 @@ absl::StatusOr<Frame> ReadExr(const std::string& path) {
   }
   // OpenEXR reports by exceptions; they end here.
   try {
-    absl::StatusOr<Frame> frame = DecodeExr(path);
+    Imf::InputFile file(path.c_str());
+    absl::StatusOr<Frame> frame = Decode(file);
     if (frame.ok()) return frame;
     return absl::Status(frame.status().code(), absl::StrCat(path, ": ", frame.status().message()));
   } catch (const std::exception& e) {
