@@ -58,8 +58,10 @@ grpc_ssl_certificate_config_reload_status TlsCredentials::Fetch(
   const auto tls = credentials.secrets_.tls();
   if (tls == credentials.fetched_) return GRPC_SSL_CERTIFICATE_CONFIG_RELOAD_UNCHANGED;
   const grpc_ssl_pem_key_cert_pair pair{tls->key.c_str(), tls->cert.c_str()};
-  *config = grpc_ssl_server_certificate_config_create(
-      tls->client_ca.empty() ? nullptr : tls->client_ca.c_str(), &pair, 1);
+  // gRPC 1.51 insists on roots even where no client is asked for a certificate: then they are not
+  // used, and any will do.
+  const std::string& roots = tls->client_ca.empty() ? tls->cert : tls->client_ca;
+  *config = grpc_ssl_server_certificate_config_create(roots.c_str(), &pair, 1);
   credentials.fetched_ = tls;
   return GRPC_SSL_CERTIFICATE_CONFIG_RELOAD_NEW;
 }
