@@ -220,7 +220,7 @@ absl::Status FrameAssembler::TakeFile() {
                                             file_bytes_, " bytes of its file"));
   }
   if (format_.codec != FrameCodec::kExr) return absl::OkStatus();
-  auto decoded = DecodeExr(frame_.file);
+  auto decoded = DecodeExr(frame_.file, int64_t{frame_.width} * frame_.height);
   if (!decoded.ok()) return absl::DataLossError(decoded.status().message());
   if (decoded->width != frame_.width || decoded->height != frame_.height ||
       decoded->depth.empty() == format_.all_layers) {

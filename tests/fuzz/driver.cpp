@@ -105,7 +105,7 @@ struct Flags {
 
 Flags Parse(int argc, char** argv) {
   Flags flags;
-  for (const std::string argument : std::vector<std::string>(argv + 1, argv + argc)) {
+  for (const std::string& argument : std::vector<std::string>(argv + 1, argv + argc)) {
     const std::string value = argument.substr(argument.find('=') + 1);
     if (argument.starts_with("-runs=")) {
       flags.runs = std::stoull(value);

@@ -43,6 +43,17 @@ void Check(const absl::Status& status) {
   LT_CHECK(status.code() != absl::StatusCode::kInternal);
 }
 
+// Scenes that are always there.
+bool IsOurs(const std::string& name) { return name == "ball" || name == "edited"; }
+
+void LoadBall(const std::string& name) {
+  v1::LoadSceneRequest request;
+  request.set_name(name);
+  request.set_text(SeedFiles("tests/system", ".textproto").at(0));
+  request.set_replace(true);
+  LT_CHECK(TheBackend().LoadScene(std::move(request)).ok());
+}
+
 void Handle(v1::LoadSceneRequest request) {
   const auto bytes = Serialize(request);
   if (CountMessages(bytes, request) > TheBackend().limits().max_scene_messages) return;
@@ -54,7 +65,7 @@ void Handle(const v1::DescribeSceneRequest& request) {
   Check(TheBackend().DescribeScene(request).status());
 }
 void Handle(const v1::UnloadSceneRequest& request) {
-  if (request.scene() != "ball") Check(TheBackend().UnloadScene(request).status());
+  if (!IsOurs(request.scene())) Check(TheBackend().UnloadScene(request).status());
 }
 void Handle(const v1::RenderFrameRequest& request) {
   const auto frame = TheBackend().PrepareFrame(request, "");
@@ -83,11 +94,7 @@ void Handle(const v1::TraceRaysRequest& request) {
 void Handle(const v1::GetStatsRequest& request) { Check(TheBackend().GetStats(request).status()); }
 // Of a scene that is as it was at first.
 void Handle(v1::UpdateSceneRequest request) {
-  v1::LoadSceneRequest load;
-  load.set_name("edited");
-  load.set_text(SeedFiles("tests/system", ".textproto").at(0));
-  load.set_replace(true);
-  LT_CHECK(TheBackend().LoadScene(std::move(load)).ok());
+  LoadBall("edited");
   request.set_scene("edited");
   Check(TheBackend().UpdateScene(request, CancelToken()).status());
 }
@@ -155,10 +162,9 @@ void LoadBallOnce() {
   static const bool loaded = [] {
     CheckEveryMethodIsFed();
     CaptureLibraryLogs(std::make_shared<spdlog::logger>("no sinks"));
-    v1::LoadSceneRequest request;
-    request.set_name("ball");
-    request.set_text(SeedFiles("tests/system", ".textproto").at(0));
-    return TheBackend().LoadScene(std::move(request)).ok();
+    LoadBall("ball");
+    LoadBall("edited");
+    return true;
   }();
   LT_CHECK(loaded);
 }
