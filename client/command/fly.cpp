@@ -3,7 +3,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "client/command/command.h"
@@ -73,11 +72,11 @@ absl::Status FlyNewest(Client& client, const std::string& scene, const FrameForm
   const auto flight = client.Steer(scene, {.format = format}, [&](LiveFrame live) {
     on_frame(live.view, std::move(live.frame));
   });
-  const auto began = std::chrono::steady_clock::now();
+  using Clock = std::chrono::system_clock;
+  const auto began = Clock::now();
   for (size_t i = 0; i < requests.size(); ++i) {
     const std::chrono::duration<double> at(static_cast<double>(i) / views_per_s);
-    std::this_thread::sleep_until(
-        began + std::chrono::duration_cast<std::chrono::steady_clock::duration>(at));
+    if (flight->HasEndedBy(began + std::chrono::duration_cast<Clock::duration>(at))) break;
     if (auto looked = flight->Look(requests[i]); !looked.ok()) return looked.status();
   }
   return flight->Land();

@@ -1,5 +1,6 @@
 #include "client/command/local_client.h"
 
+#include <condition_variable>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -121,9 +122,14 @@ std::unique_ptr<LiveFlight> LocalClient::Steer(const std::string& scene, const L
       if (!status_.ok()) return status_;
       auto frame = client_.RenderFrame(scene_, view, "", format_, nullptr);
       status_ = frame.status();
+      if (!frame.ok()) failed_.notify_all();
       if (!frame.ok()) return status_;
       on_frame_({.view = looked_, .frame = *std::move(frame)});
       return looked_++;
+    }
+    bool HasEndedBy(std::chrono::system_clock::time_point time) override {
+      std::unique_lock lock(mutex_);
+      return failed_.wait_until(lock, time, [this] { return !status_.ok(); });
     }
     absl::Status Land() override {
       const std::lock_guard lock(mutex_);
@@ -136,6 +142,7 @@ std::unique_ptr<LiveFlight> LocalClient::Steer(const std::string& scene, const L
     const FrameFormat format_;
     const OnFrame on_frame_;
     std::mutex mutex_;
+    std::condition_variable failed_;
     uint64_t looked_ = 0;  // guarded by mutex_, as is status_
     absl::Status status_;
   };

@@ -2,6 +2,7 @@
 // newest one waits, and what it has overtaken gets no frame.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -42,6 +43,10 @@ class LiveFlight {
   // Takes the place of a viewpoint that has not been sent, and does not wait. Viewpoints are
   // numbered from 0 on; this is the number, or why the flight has ended.
   virtual absl::StatusOr<uint64_t> Look(const FrameRequest& view) = 0;
+
+  // For whoever has the next viewpoint at some time: waits until then, or until the flight has
+  // ended, and says whether it has.
+  virtual bool HasEndedBy(std::chrono::system_clock::time_point time) = 0;
 
   // No viewpoint comes any more: waits for the full frame of the newest one. OK, or why the flight
   // has ended without it, which may have been before: an error that is no reason to try again, or

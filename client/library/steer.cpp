@@ -57,6 +57,11 @@ class GrpcLiveFlight final : public LiveFlight {
     return looked_ - 1;
   }
 
+  bool HasEndedBy(Clock::time_point time) override {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_until(lock, time, [this] { return ended_; });
+  }
+
   absl::Status Land() override {
     std::unique_lock lock(mutex_);
     landing_ = true;

@@ -51,6 +51,7 @@ TEST(LiveFlightTest, AReducedFrameComesFirst) {
   const auto flight =
       running.client().Steer("ball", {.while_moving = LiveOptions::WhileMoving{.divisor = 4}},
                              [&](LiveFrame frame) { frames.push_back(std::move(frame)); });
+  EXPECT_FALSE(flight->HasEndedBy(std::chrono::system_clock::now()));
   ASSERT_TRUE(flight->Look(View(70, 40)).ok());
   ASSERT_TRUE(flight->Land().ok()) << flight->Land();
   ASSERT_EQ(frames.size(), 2u);
@@ -64,6 +65,7 @@ TEST(LiveFlightTest, WhatIsWrongEndsItWithTheServersWords) {
   test::RunningServer running;
   const auto flight = running.client().Steer("nobody", {}, [](const LiveFrame&) { FAIL(); });
   ASSERT_TRUE(flight->Look(View(8, 8)).ok());
+  EXPECT_TRUE(flight->HasEndedBy(std::chrono::system_clock::time_point::max()));
   EXPECT_TRUE(absl::IsNotFound(flight->Land())) << flight->Land();
   EXPECT_TRUE(absl::IsNotFound(flight->Look(View(8, 8)).status()));
   EXPECT_TRUE(absl::IsInvalidArgument(
