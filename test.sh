@@ -8,31 +8,41 @@ cd "$(dirname "$0")" || exit 1
 
 usage() {
   cat <<'TEXT'
-usage: ./test.sh [--quick] [--stage Release|Asan|Tsan]... [--stress-long] [--fuzz-long] [--help]
+usage: ./test.sh [--quick] [--stage Release|Asan|Tsan|Fuzz]... [--stress-long]
+                 [--fuzz-long [SECONDS]] [--help]
   --quick       Release only (the same as --stage Release)
   --stage TYPE  only these build types, in the order given
   --stress-long the stress tests in their long form, some twenty times as much
-  --fuzz-long   the fuzz tests, of the Asan stage, with a thousand times as many inputs
+  --fuzz-long   after the other stages, or alone with --stage Fuzz: libFuzzer looks for inputs that
+                end a reader of what comes from outside, so many seconds for each of them (60);
+                needs the packages clang and libclang-rt-14-dev, which nothing else here does.
+                What it has learnt stays in build/fuzz, where the next run goes on
   --help        this text
 Environment:
   LINETREE_TEST_JOBS    tests that run at the same time (default: one a core)
   LINETREE_STRESS_SEED  a number that the stress tests' scenes and rays are drawn from
   LINETREE_STRESS_LONG  1: the same as --stress-long
-  LINETREE_FUZZ_LONG    1: the same as --fuzz-long
-Builds go to build/release, build/asan and build/tsan.
+  LINETREE_FUZZ_SECONDS the seconds of --fuzz-long
+Builds go to build/release, build/asan, build/tsan and build/fuzz.
 TEXT
 }
 
 stages=()
+fuzz_long=false
 while [ $# -gt 0 ]; do
   case "$1" in
     --quick) stages+=(Release) ;;
     --stress-long) export LINETREE_STRESS_LONG=1 ;;
-    --fuzz-long) export LINETREE_FUZZ_LONG=1 ;;
+    --fuzz-long)
+      fuzz_long=true
+      if [[ ${2-} =~ ^[0-9]+$ ]]; then
+        export LINETREE_FUZZ_SECONDS=$2
+        shift
+      fi ;;
     --stage)
       case "${2-}" in
-        Release | Asan | Tsan) stages+=("$2"); shift ;;
-        *) echo "--stage: expected Release, Asan or Tsan, got '${2-}'" >&2; exit 2 ;;
+        Release | Asan | Tsan | Fuzz) stages+=("$2"); shift ;;
+        *) echo "--stage: expected Release, Asan, Tsan or Fuzz, got '${2-}'" >&2; exit 2 ;;
       esac ;;
     --help | -h) usage; exit 0 ;;
     *) echo "unknown option '$1'" >&2; usage >&2; exit 2 ;;
@@ -40,6 +50,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 [ "${#stages[@]}" -eq 0 ] && stages=(Release Asan Tsan)
+if $fuzz_long && [[ " ${stages[*]} " != *" Fuzz "* ]]; then stages+=(Fuzz); fi
 
 .ci/install || exit 1
 
@@ -56,6 +67,7 @@ excluded_of() {
   case "$1" in
     Release) echo '^$' ;;
     Asan | Tsan) echo '^(oracle|house|audit)$' ;;
+    Fuzz) echo '^(unit|system|stress|oracle|house|audit)$' ;;
   esac
 }
 
@@ -68,15 +80,20 @@ launcher_of() {
 
 run_stage() {
   local type=$1 counts launcher
+  local targets=() jobs="${LINETREE_TEST_JOBS:-$(nproc)}"
   echo "== $type"
-  if ! .ci/build "$type"; then
+  if [ "$type" = Fuzz ]; then
+    targets=(fuzzers)
+    export LINETREE_FUZZ_SECONDS="${LINETREE_FUZZ_SECONDS:-60}"
+  fi
+  if ! .ci/build "$type" "${targets[@]}"; then
     broken+=("$type did not build")
     return
   fi
   launcher=$(launcher_of "$type")
   # shellcheck disable=SC2086  # the launcher is a command with its option, or nothing
   $launcher ctest --test-dir "build/${type,,}" --output-on-failure \
-    --parallel "${LINETREE_TEST_JOBS:-$(nproc)}" --label-exclude "$(excluded_of "$type")" |
+    --parallel "$jobs" --label-exclude "$(excluded_of "$type")" |
     tee "$log"
   local status=${PIPESTATUS[0]}
   counts=$(sed -nE 's/^.*tests passed, ([0-9]+) tests? failed out of ([0-9]+).*$/\1 \2/p' "$log")

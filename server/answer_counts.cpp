@@ -64,12 +64,24 @@ void AnswerCounts::Add(const RayBatch& batch) {
 
 void AnswerCounts::Merge(const ByObject& more) {
   const std::lock_guard lock(mutex_);
-  for (const auto& [object, counts] : more) counts_[object] += counts;
+  for (const auto& [object, counts] : more) {
+    counts_[object] += counts;
+    sum_ += counts;
+  }
 }
 
 AnswerCounts::ByObject AnswerCounts::values() const {
   const std::lock_guard lock(mutex_);
   return counts_;
+}
+
+AnswerCounts::Counts AnswerCounts::sum() const {
+  const std::lock_guard lock(mutex_);
+  return sum_;
+}
+
+void AnswerSumToWire(const AnswerCounts::Counts& sum, SceneStats* stats) {
+  ToWire(sum, stats->mutable_answers());
 }
 
 void AnswerCountsToWire(const AnswerCounts::ByObject& counts, const Scene& scene,

@@ -31,13 +31,19 @@ class AnswerCounts {
   void Add(const RayBatch& batch);
 
   ByObject values() const;
+  // The sum over all of them, kept as they come.
+  Counts sum() const;
 
  private:
   void Merge(const ByObject& more);
 
   mutable std::mutex mutex_;
-  ByObject counts_;  // guarded by mutex_
+  ByObject counts_;  // guarded by mutex_, as is sum_
+  Counts sum_;
 };
+
+// Fills in the answers of the scene.
+void AnswerSumToWire(const AnswerCounts::Counts& sum, v1::GetStatsReply::SceneStats* stats);
 
 // Fills in the answers of the scene and of its objects; entries of objects that have none yet are
 // added in order. `scene` is what the counts are about.

@@ -14,6 +14,7 @@
 #include "core/policy/policies.h"
 #include "core/store/data_folder.h"
 #include "server/scene_root.h"
+#include "server/wire_priority.h"
 
 namespace linetree {
 namespace {
@@ -322,6 +323,9 @@ absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest
 
 absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFrameRequest& request,
                                                              absl::string_view path) {
+  const auto priority =
+      PriorityFromWire(request.priority(), Priority::kInteractive, absl::StrCat(path, "priority"));
+  if (!priority.ok()) return priority.status();
   auto scene = scenes_.Find(request.scene(), absl::StrCat(path, "scene"));
   if (!scene.ok()) return scene.status();
   auto frame = FrameRequestFromWire(request, scene->host->scene(), options_.defaults,
@@ -333,7 +337,8 @@ absl::StatusOr<Backend::PreparedFrame> Backend::PrepareFrame(const v1::RenderFra
   auto memory =
       frame_bytes_.Take(pixels * (kFrameBytesPerPixel + FileBytesPerPixel(format->codec)));
   if (!memory) return Busy("memory for frames");
-  return PreparedFrame{*std::move(scene), *std::move(frame), *format, *std::move(memory)};
+  return PreparedFrame{*priority, *std::move(scene), *std::move(frame), *format,
+                       *std::move(memory)};
 }
 
 absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelToken& cancel) {
@@ -348,7 +353,9 @@ absl::StatusOr<Frame> Backend::Render(const PreparedFrame& frame, const CancelTo
 }
 
 Load Backend::CurrentLoad() const {
-  return {.waiting_renders = renders_.waiting(),
+  return {.waiting_renders = {renders_.waiting(Priority::kInteractive),
+                              renders_.waiting(Priority::kBatch),
+                              renders_.waiting(Priority::kBackground)},
           .waiting_loads = loads_.waiting(),
           .open_flights = options_.limits.max_flights - flights_.free()};
 }

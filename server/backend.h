@@ -59,6 +59,9 @@ class Backend {
   absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request,
                                                    const CancelToken& cancel);
   absl::StatusOr<v1::GetStatsReply> GetStats(const v1::GetStatsRequest& request) const;
+  // As GetStats of all scenes, but without cells and answers by object: what metrics show, at a
+  // cost that does not grow with cells or objects.
+  v1::GetStatsReply GetSums() const;
   v1::GetLimitsReply GetLimits() const;
   absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) const;
   // Leaves the timer where the answers have become a message.
@@ -67,6 +70,7 @@ class Backend {
 
   // A frame that has been checked and has its memory set aside; nothing is rendered yet.
   struct PreparedFrame {
+    Priority priority;
     NamedHost scene;
     FrameRequest request;
     FrameFormat format;
@@ -103,6 +107,8 @@ class Backend {
   absl::StatusOr<std::vector<FrameRequest>> WarmUpFrames(const v1::WarmUp& warm_up) const;
   v1::SceneInfo InfoOf(const NamedHost& scene) const;
   static v1::GetStatsReply::SceneStats StatsOf(const NamedHost& scene);
+  static v1::GetStatsReply::SceneStats SumsOf(const NamedHost& scene);
+  void AddServer(v1::GetStatsReply& reply) const;
 
   const ServerOptions options_;
   const std::shared_ptr<spdlog::logger> log_;

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/math/check.h"
+#include "server/wire_priority.h"
 
 namespace linetree {
 namespace {
@@ -76,6 +77,18 @@ void FlightPlan::Add(absl::StatusOr<v1::FlyRequest> request) {
 
 bool FlightPlan::WantsMore() const {
   return !failed_ && (newest_only_ || waiting_.size() < max_waiting_);
+}
+
+const v1::FlyRequest* FlightPlan::NextRequest() const {
+  if (waiting_.empty()) return &*refinement_;
+  return waiting_.front().ok() ? &*waiting_.front() : nullptr;
+}
+
+Priority FlightPlan::PriorityOfNext() const {
+  const v1::FlyRequest* next = NextRequest();
+  if (next == nullptr) return Priority::kInteractive;
+  return PriorityFromWire(next->frame().priority(), Priority::kInteractive, "frame.priority")
+      .value_or(Priority::kInteractive);
 }
 
 uint64_t FlightPlan::WorkOfNext() const {

@@ -9,6 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "linetree/v1/service.pb.h"
+#include "server/schedule.h"
 
 namespace linetree {
 
@@ -34,6 +35,8 @@ class FlightPlan {
   bool HasNext() const { return !waiting_.empty() || refinement_; }
   // Rays of the next step, estimated; at least 1.
   uint64_t WorkOfNext() const;
+  // The class of the next step; interactive for what is wrong.
+  Priority PriorityOfNext() const;
   // Requires HasNext().
   absl::StatusOr<Step> Next();
 
@@ -42,6 +45,8 @@ class FlightPlan {
 
  private:
   absl::Status Check(const v1::FlyRequest& request);
+  // Null when what is wrong is next.
+  const v1::FlyRequest* NextRequest() const;
 
   const size_t max_waiting_;
   bool is_first_ = true;

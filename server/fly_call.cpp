@@ -88,7 +88,8 @@ void FlyCall::SubmitNext() {
   // At most one job per flight, and flights are counted: these jobs need no bound of their own.
   backend_.look_ahead().Yield();
   const auto job = backend_.renders().Submit(
-      {.session = absl::StrCat("flight ", token_.session),
+      {.priority = plan_.PriorityOfNext(),
+       .session = absl::StrCat("flight ", token_.session),
        // What is more than may be asked for is refused in its turn.
        .work_rays = std::min(plan_.WorkOfNext(), backend_.limits().render.max_samples),
        .deadline = info_.deadline,

@@ -27,9 +27,12 @@ absl::Status FrameCall::Submit(const grpc::ByteBuffer& request) {
   frame_ = *std::move(frame);
   timer_.Enter(FrameTimer::Stage::kQueue);
   backend_.look_ahead().Yield();
-  const auto job = backend_.renders().Submit(
-      {.session = info_.session, .work_rays = EstimatedRays(message), .deadline = info_.deadline},
-      [call = self_](const absl::Status& turn) { call->Run(turn); });
+  const auto job =
+      backend_.renders().Submit({.priority = frame_->priority,
+                                 .session = info_.session,
+                                 .work_rays = EstimatedRays(message),
+                                 .deadline = info_.deadline},
+                                [call = self_](const absl::Status& turn) { call->Run(turn); });
   if (job.ok()) job_ = *job;
   return job.status();
 }

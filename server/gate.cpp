@@ -54,8 +54,8 @@ Reactor* Gate::Pass(Context* context, Role needed, absl::string_view what, const
   absl::Status status;
   if (closed_) {
     status = absl::UnavailableError("the server is stopping");
-  } else if (tokens_) {
-    status = CheckCaller(*tokens_, Authorization(context->client_metadata()), needed, what);
+  } else if (const auto tokens = secrets_.tokens()) {
+    status = CheckCaller(*tokens, Authorization(context->client_metadata()), needed, what);
   }
   if (status.ok()) return call();
   return new Refused<Reactor>(Finished(status, ReadCallInfo(context), context));

@@ -8,18 +8,17 @@
 
 #include <atomic>
 #include <map>
-#include <optional>
 #include <vector>
 
+#include "server/secrets.h"
 #include "server/service.h"
-#include "server/tokens.h"
 
 namespace linetree {
 
 class Gate final : public RawService {
  public:
-  Gate(linetree::Service& service, std::optional<Tokens> tokens)
-      : service_(service), tokens_(std::move(tokens)) {}
+  // Both must outlive the gate.
+  Gate(linetree::Service& service, const Secrets& secrets) : service_(service), secrets_(secrets) {}
 
   // Lets nobody in any more: calls end with UNAVAILABLE.
   void Close() { closed_ = true; }
@@ -52,7 +51,7 @@ class Gate final : public RawService {
   Reactor* Pass(Context* context, Role needed, absl::string_view what, const Call& call) const;
 
   linetree::Service& service_;
-  const std::optional<Tokens> tokens_;
+  const Secrets& secrets_;
   std::atomic<bool> closed_{false};
 };
 

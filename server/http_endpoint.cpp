@@ -22,12 +22,21 @@ void Answer(httplib::Response& response, int status, const std::string& text) {
   response.set_content(text, "text/plain; charset=utf-8");
 }
 
-std::unique_ptr<httplib::Server> MakeServer(const TlsFiles& tls) {
+// Each connection shows the certificate that `secrets` then has.
+int ShowNewest(SSL* connection, void* secrets) {
+  return ShowCertificate(*static_cast<const Secrets*>(secrets)->tls(), connection) ? 1 : 0;
+}
+
+std::unique_ptr<httplib::Server> MakeServer(const Secrets& secrets) {
   std::unique_ptr<httplib::Server> http;
-  if (tls.cert.empty()) {
+  if (secrets.tls() == nullptr) {
     http = std::make_unique<httplib::Server>();
   } else {
-    http = std::make_unique<httplib::SSLServer>(tls.cert.c_str(), tls.key.c_str());
+    http = std::make_unique<httplib::SSLServer>([&](SSL_CTX& context) {
+      SSL_CTX_set_min_proto_version(&context, TLS1_2_VERSION);
+      SSL_CTX_set_cert_cb(&context, ShowNewest, const_cast<Secrets*>(&secrets));
+      return true;
+    });
   }
   http->new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http->set_read_timeout(kPatience);
@@ -70,9 +79,10 @@ void HttpEndpoint::AddRoutes() {
 }
 
 absl::StatusOr<std::unique_ptr<HttpEndpoint>> HttpEndpoint::Start(const std::string& address,
-                                                                  const TlsFiles& tls,
+                                                                  const Secrets& secrets,
                                                                   Callbacks callbacks) {
-  std::unique_ptr<HttpEndpoint> endpoint(new HttpEndpoint(MakeServer(tls), std::move(callbacks)));
+  std::unique_ptr<HttpEndpoint> endpoint(
+      new HttpEndpoint(MakeServer(secrets), std::move(callbacks)));
   const auto parts = SplitHostPort(address);
   int port = -1;
   if (parts && endpoint->http_->is_valid()) {

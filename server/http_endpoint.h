@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "absl/status/statusor.h"
-#include "server/tls.h"
+#include "server/secrets.h"
 
 namespace httplib {
 class Server;
@@ -30,10 +30,11 @@ class HttpEndpoint {
     std::function<bool(const std::string& authorization)> may_see_metrics;
   };
 
-  // `address` is host:port, port 0 takes a free one. HTTPS where `tls` names a certificate; clients
-  // need none. UNAVAILABLE when the address cannot be listened on.
+  // `address` is host:port, port 0 takes a free one. HTTPS where `secrets`, which must outlive the
+  // endpoint, has a certificate; clients need none. UNAVAILABLE when the address cannot be listened
+  // on.
   static absl::StatusOr<std::unique_ptr<HttpEndpoint>> Start(const std::string& address,
-                                                             const TlsFiles& tls,
+                                                             const Secrets& secrets,
                                                              Callbacks callbacks);
   // Ends when the requests that are being answered are done.
   ~HttpEndpoint();

@@ -101,4 +101,9 @@ size_t JobQueue::waiting() const {
   return schedule_.size();
 }
 
+size_t JobQueue::waiting(Priority priority) const {
+  const std::lock_guard lock(mutex_);
+  return schedule_.size(priority);
+}
+
 }  // namespace linetree

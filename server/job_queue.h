@@ -38,6 +38,7 @@ class JobQueue {
   void Withdraw(JobId id);
   // Jobs that wait.
   size_t waiting() const;
+  size_t waiting(Priority priority) const;
 
  private:
   void Work();

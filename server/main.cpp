@@ -1,4 +1,5 @@
-// linetreed: flags in, a server until SIGTERM or SIGINT.
+// linetreed: flags in, a server until SIGTERM or SIGINT. SIGHUP: reads certificates and tokens
+// anew.
 #include <signal.h>
 #include <unistd.h>
 
@@ -132,7 +133,8 @@ void AddSecurityFlags(CLI::App& app, ServerOptions& options) {
       ->type_name("FILE");
   app.add_option("--token-file", options.token_file,
                  "lines 'viewer TOKEN' and 'admin TOKEN': callers must show one of them; viewers "
-                 "may not load, change or unload scenes. Health and reflection answer anybody")
+                 "may not load, change or unload scenes. Health and reflection answer anybody. "
+                 "SIGHUP reads this file and those of TLS anew")
       ->type_name("FILE");
   app.add_flag("--insecure", options.insecure, "let other machines in without TLS or token");
 }
@@ -185,13 +187,17 @@ absl::Status Finish(const Flags& flags, ServerOptions& options) {
 }
 
 // Blocks the signals that end the server in this thread and all that it starts, so that one thread
-// may wait for them.
+// may wait for them; and the one that asks for files to be read anew.
 sigset_t BlockEndSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  sigset_t reload;
+  sigemptyset(&reload);
+  sigaddset(&reload, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &reload, nullptr);
   // Whoever read our standard output may go away.
   signal(SIGPIPE, SIG_IGN);
   // A file that may not grow any more is an error of whoever writes it.
@@ -208,6 +214,17 @@ void ExitAtTheNext(const sigset_t& signals) {
   }).detach();
 }
 
+// The signal that ends the server. Until then SIGHUP reads its secrets anew.
+int WaitForTheEnd(sigset_t signals, Server& server) {
+  sigaddset(&signals, SIGHUP);
+  for (;;) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    if (signal != SIGHUP) return signal;
+    server.ReloadSecrets();
+  }
+}
+
 int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
   const sigset_t signals = BlockEndSignals();
   auto server = Server::Start(options, log);
@@ -219,8 +236,7 @@ int Serve(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& l
   if (!options.http.empty()) std::printf("http on %s\n", (*server)->http_address().c_str());
   std::fflush(stdout);
   NotifyServiceManager("READY=1");
-  int signal = 0;
-  sigwait(&signals, &signal);
+  const int signal = WaitForTheEnd(signals, **server);
   NotifyServiceManager("STOPPING=1");
   log->info("signal {}: draining for at most {} ms", signal, options.drain_timeout_ms.count());
   ExitAtTheNext(signals);

@@ -43,6 +43,19 @@ uint64_t CountInside(pb::io::CodedInputStream& stream, const pb::Descriptor* typ
   return count;
 }
 
+// visit(tag, stream) for the fields at the top level, until it says that it could not read one.
+template <class Fn>
+void ForEachField(const grpc::ByteBuffer& bytes, Fn&& visit) {
+  grpc::ByteBuffer copy = bytes;
+  grpc::ProtoBufferReader reader(&copy);
+  if (!reader.status().ok()) return;
+  pb::io::CodedInputStream stream(&reader);
+  stream.SetTotalBytesLimit(std::numeric_limits<int>::max());
+  while (const uint32_t tag = stream.ReadTag()) {
+    if (!visit(tag, stream)) return;
+  }
+}
+
 }  // namespace
 
 absl::Status CheckSize(const grpc::ByteBuffer& bytes, size_t max_bytes, const pb::Message& type) {
@@ -73,17 +86,23 @@ uint64_t CountMessages(const grpc::ByteBuffer& bytes, const pb::Message& type) {
 }
 
 uint64_t CountField(const grpc::ByteBuffer& bytes, int field_number) {
-  grpc::ByteBuffer copy = bytes;
-  grpc::ProtoBufferReader reader(&copy);
-  if (!reader.status().ok()) return 0;
-  pb::io::CodedInputStream stream(&reader);
-  stream.SetTotalBytesLimit(std::numeric_limits<int>::max());
   uint64_t count = 0;
-  while (const uint32_t tag = stream.ReadTag()) {
+  ForEachField(bytes, [&](uint32_t tag, pb::io::CodedInputStream& stream) {
     if (WireFormatLite::GetTagFieldNumber(tag) == field_number) ++count;
-    if (!WireFormatLite::SkipField(&stream, tag)) break;
-  }
+    return WireFormatLite::SkipField(&stream, tag);
+  });
   return count;
+}
+
+uint64_t LastVarint(const grpc::ByteBuffer& bytes, int field_number) {
+  uint64_t last = 0;
+  ForEachField(bytes, [&](uint32_t tag, pb::io::CodedInputStream& stream) {
+    if (tag == WireFormatLite::MakeTag(field_number, WireFormatLite::WIRETYPE_VARINT)) {
+      return stream.ReadVarint64(&last);
+    }
+    return WireFormatLite::SkipField(&stream, tag);
+  });
+  return last;
 }
 
 grpc::ByteBuffer Serialize(const pb::Message& message) {

@@ -24,6 +24,10 @@ absl::Status Parse(const grpc::ByteBuffer& bytes, size_t max_bytes,
 // How often the field stands at the top level; stops early at malformed bytes.
 uint64_t CountField(const grpc::ByteBuffer& bytes, int field_number);
 
+// The number that the field, which is no repeated one, stands for at the top level: the last one,
+// as in parsing; 0 when there is none. Stops early at malformed bytes.
+uint64_t LastVarint(const grpc::ByteBuffer& bytes, int field_number);
+
 // How many messages parsing would build, the whole one included: two bytes may cost a hundred.
 // Stops early at malformed bytes.
 uint64_t CountMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type);

@@ -10,6 +10,7 @@
 #include <prometheus/metric_family.h>
 #include <prometheus/registry.h>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "linetree/v1/service.pb.h"
+#include "server/schedule.h"
 
 namespace linetree {
 
@@ -42,7 +44,7 @@ class CallMetrics {
 
 // What the server holds and has to do.
 struct Load {
-  size_t waiting_renders = 0;
+  std::array<size_t, kPriorities> waiting_renders{};  // by Priority
   size_t waiting_loads = 0;
   uint64_t open_flights = 0;
   uint64_t log_lines_lost = 0;

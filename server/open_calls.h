@@ -52,6 +52,13 @@ class OpenCalls {
     none_open_.wait_until(lock, end, [] { return false; });
   }
 
+  // Returns when the last share is gone: threads that end calls may hold one for a moment longer
+  // than gRPC knows of the call.
+  void AwaitNone() {
+    std::unique_lock lock(mutex_);
+    none_open_.wait(lock, [this] { return open_ == 0; });
+  }
+
  private:
   void Leave() {
     const std::lock_guard lock(mutex_);

@@ -73,6 +73,10 @@ class Schedule {
   JobInfo::Clock::time_point EarliestDeadline() const;
   bool empty() const { return jobs_.empty(); }
   size_t size() const { return jobs_.size(); }
+  // Of a class.
+  size_t size(Priority priority) const {
+    return classes_[static_cast<size_t>(priority)].turn.waiting;
+  }
 
  private:
   // The tag of a class or session. It counts while jobs of it wait.

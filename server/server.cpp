@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/call_observer.h"
 #include "server/log_sink.h"
+#include "server/tls_credentials.h"
 #include "server/token_processor.h"
 
 namespace linetree {
@@ -37,44 +38,19 @@ std::string WithPort(const std::string& listen, int port) {
   return absl::StrCat(listen.substr(0, listen.rfind(':')), ":", port);
 }
 
-absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(const TlsFiles& files) {
-  if (files.cert.empty()) return grpc::InsecureServerCredentials();
-  auto pems = ReadTls(files);
-  if (!pems.ok()) return pems.status();
-  grpc::SslServerCredentialsOptions options(
-      pems->client_ca.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
-                              : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
-  options.pem_key_cert_pairs.push_back({pems->key, pems->cert});
-  options.pem_root_certs = pems->client_ca;
-  return grpc::SslServerCredentials(options);
-}
-
-absl::StatusOr<std::optional<Tokens>> ReadTokens(const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  auto tokens = Tokens::Read(file);
-  if (tokens.ok()) return *std::move(tokens);
-  return absl::InvalidArgumentError(absl::StrCat("--token-file: ", tokens.status().message()));
-}
-
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options,
                                                       std::shared_ptr<spdlog::logger> log) {
   if (auto status = ValidateServerOptions(options); !status.ok()) return status;
   KeepGrpcUp();
-  auto credentials = MakeCredentials(options.tls);
-  if (!credentials.ok()) return credentials.status();
-  auto tokens = ReadTokens(options.token_file);
-  if (!tokens.ok()) return tokens.status();
-  std::unique_ptr<Server> server(new Server(options, *std::move(tokens), log));
-  if (server->tokens_ && !options.tls.cert.empty()) {
-    (*credentials)
-        ->SetAuthMetadataProcessor(
-            std::make_shared<TokenProcessor>(*server->tokens_, server->metrics_, log));
-  }
+  auto secrets = Secrets::Read(options.tls, options.token_file);
+  if (!secrets.ok()) return secrets.status();
+  std::unique_ptr<Server> server(new Server(options, *std::move(secrets), log));
+  server->MakeCredentials();
   if (auto status = server->StartHttp(options); !status.ok()) return status;
   if (auto status = server->backend_.LoadSceneFiles(); !status.ok()) return status;
-  if (auto status = server->Listen(options, *credentials); !status.ok()) return status;
+  if (auto status = server->Listen(options); !status.ok()) return status;
   server->SetReady(false);
   auto status = server->backend_.WarmUp([server = server.get()] { server->SetReady(true); });
   if (!status.ok()) return status;
@@ -87,7 +63,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
 absl::Status Server::StartHttp(const ServerOptions& options) {
   if (options.http.empty()) return absl::OkStatus();
   auto http = HttpEndpoint::Start(
-      options.http, options.tls,
+      options.http, *secrets_,
       {.is_ready = [this] { return is_ready_.load(); },
        .metrics = [this] { return MetricsText(); },
        .may_see_metrics = [this](const std::string& header) { return MaySeeMetrics(header); }});
@@ -96,13 +72,32 @@ absl::Status Server::StartHttp(const ServerOptions& options) {
   return absl::OkStatus();
 }
 
-absl::Status Server::Listen(const ServerOptions& options,
-                            const std::shared_ptr<grpc::ServerCredentials>& credentials) {
+void Server::MakeCredentials() {
+  if (secrets_->tls() == nullptr) {
+    credentials_ = grpc::InsecureServerCredentials();
+    return;
+  }
+  credentials_ = std::make_shared<TlsCredentials>(*secrets_);
+  if (secrets_->tokens() == nullptr) return;
+  credentials_->SetAuthMetadataProcessor(
+      std::make_shared<TokenProcessor>(*secrets_, metrics_, log_));
+}
+
+void Server::ReloadSecrets() {
+  const auto [tls, tokens] = secrets_->Reload();
+  for (const absl::Status& status : {tls, tokens}) {
+    if (!status.ok()) log_->error("{}; the old ones stay", std::string(status.message()));
+  }
+  if (secrets_->tls() != nullptr && tls.ok()) log_->info("certificate and key are read anew");
+  if (secrets_->tokens() != nullptr && tokens.ok()) log_->info("tokens are read anew");
+}
+
+absl::Status Server::Listen(const ServerOptions& options) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   int port = 0;
-  builder.AddListeningPort(options.listen, credentials, &port);
+  builder.AddListeningPort(options.listen, credentials_, &port);
   builder.RegisterService(&gate_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> observers;
   observers.push_back(std::make_unique<CallObserverFactory>(metrics_, log_));
@@ -150,15 +145,15 @@ std::string Server::MetricsText() {
       load.log_lines_lost += lossy->lines_lost();
     }
   }
-  // All scenes: there is nothing in the request that could be wrong.
-  for (auto& family : CollectServer(*backend_.GetStats({}), load)) {
+  for (auto& family : CollectServer(backend_.GetSums(), load)) {
     families.push_back(std::move(family));
   }
   return linetree::MetricsText(families);
 }
 
 bool Server::MaySeeMetrics(const std::string& authorization) const {
-  return !tokens_ || CheckCaller(*tokens_, {authorization}, Role::kViewer, "metrics").ok();
+  const auto tokens = secrets_->tokens();
+  return !tokens || CheckCaller(*tokens, {authorization}, Role::kViewer, "metrics").ok();
 }
 
 void Server::Drain(std::chrono::milliseconds timeout_ms) {
@@ -180,6 +175,7 @@ void Server::Drain(std::chrono::milliseconds timeout_ms) {
   grpc_->Shutdown(std::chrono::system_clock::now() +
                   std::min<steady_clock::duration>(left, kLastReplies_ms));
   grpc_.reset();
+  backend_.open_calls().AwaitNone();
   backend_.SaveTrace();
 }
 

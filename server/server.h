@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -16,6 +15,7 @@
 #include "server/http_endpoint.h"
 #include "server/metrics.h"
 #include "server/options.h"
+#include "server/secrets.h"
 #include "server/service.h"
 
 namespace linetree {
@@ -43,28 +43,33 @@ class Server {
   // Whether scenes that were to be warmed up are warm; the health service says the same.
   bool is_ready() const { return is_ready_; }
 
+  // Reads certificates, key and tokens anew, for calls and connections that come; those that are
+  // open go on. What is bad is a line of the log, and the old ones stay.
+  void ReloadSecrets();
+
   // Is not ready from now on, takes no more calls, lets open ones go on for at most `timeout_ms`,
   // then cancels them. Returns when all are done. A second call does nothing.
   void Drain(std::chrono::milliseconds timeout_ms);
 
  private:
-  Server(const ServerOptions& options, std::optional<Tokens> tokens,
+  Server(const ServerOptions& options, std::unique_ptr<Secrets> secrets,
          const std::shared_ptr<spdlog::logger>& log)
-      : tokens_(std::move(tokens)),
+      : secrets_(std::move(secrets)),
         log_(log),
         backend_(options, log),
         service_(backend_),
-        gate_(service_, tokens_) {}
+        gate_(service_, *secrets_) {}
   absl::Status StartHttp(const ServerOptions& options);
-  absl::Status Listen(const ServerOptions& options,
-                      const std::shared_ptr<grpc::ServerCredentials>& credentials);
+  absl::Status Listen(const ServerOptions& options);
+  // In the clear, or by TLS and with a look at tokens before requests are read.
+  void MakeCredentials();
   void SetReady(bool is_ready);
   // As they come and go.
   void TellHealthOfScenes();
   std::string MetricsText();
   bool MaySeeMetrics(const std::string& authorization) const;
 
-  const std::optional<Tokens> tokens_;
+  const std::unique_ptr<Secrets> secrets_;
   const std::shared_ptr<spdlog::logger> log_;
   const std::shared_ptr<CallMetrics> metrics_ = std::make_shared<CallMetrics>();
   std::string address_;
@@ -72,6 +77,7 @@ class Server {
   Service service_;
   Gate gate_;
   std::atomic<bool> is_ready_ = false;
+  std::shared_ptr<grpc::ServerCredentials> credentials_;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<HttpEndpoint> http_;
 };

@@ -9,6 +9,7 @@
 #include "server/log_format.h"
 #include "server/messages.h"
 #include "server/queued_call.h"
+#include "server/wire_priority.h"
 
 namespace linetree {
 namespace {
@@ -53,6 +54,13 @@ absl::StatusOr<uint64_t> CheckBatch(const grpc::ByteBuffer& bytes, const ServerL
   const auto status = CheckSize(bytes, limits.max_batch_bytes, v1::TraceRaysRequest());
   if (!status.ok()) return status;
   return rays;
+}
+
+// Read without the rest, which is parsed in its turn.
+absl::StatusOr<Priority> PriorityOfBatch(const grpc::ByteBuffer& bytes) {
+  const uint64_t asked = LastVarint(bytes, v1::TraceRaysRequest::kPriorityFieldNumber);
+  return PriorityFromWire(static_cast<v1::Priority>(static_cast<int32_t>(asked)), Priority::kBatch,
+                          "priority");
 }
 
 absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type,
@@ -153,6 +161,8 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
   const CallInfo info = ReadCallInfo(context);
   const auto rays = CheckBatch(*request, backend_.limits());
   if (!rays.ok()) return Finish(context, info, rays.status());
+  const auto priority = PriorityOfBatch(*request);
+  if (!priority.ok()) return Finish(context, info, priority.status());
   const auto timer = std::make_shared<FrameTimer>();
   timer->Enter(FrameTimer::Stage::kQueue);
   const auto work = [this, request, timer, id = info.request_id](const CancelToken& cancel) {
@@ -166,7 +176,7 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
                                           return answer;
                                         });
   };
-  const JobInfo job{.priority = Priority::kBatch,
+  const JobInfo job{.priority = *priority,
                     .session = info.session,
                     .work_rays = std::max<uint64_t>(*rays, 1),
                     .deadline = info.deadline};

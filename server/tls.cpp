@@ -3,6 +3,7 @@
 #include <openssl/bio.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
+#include <openssl/ssl.h>
 #include <openssl/x509.h>
 
 #include <memory>
@@ -72,6 +73,26 @@ absl::StatusOr<TlsPems> ReadTls(const TlsFiles& files) {
   if (!client_ca.ok()) return client_ca.status();
   pems.client_ca = *std::move(client_ca);
   return pems;
+}
+
+bool ShowCertificate(const TlsPems& pems, ssl_st* connection) {
+  const Owned<BIO> reader = Reader(pems.cert);
+  const auto next = [&] {
+    return Owned<X509>(PEM_read_bio_X509(reader.get(), nullptr, NoPassword, nullptr));
+  };
+  const Owned<X509> own = next();
+  const Owned<EVP_PKEY> key(
+      PEM_read_bio_PrivateKey(Reader(pems.key).get(), nullptr, NoPassword, nullptr));
+  if (SSL_use_certificate(connection, own.get()) != 1 ||
+      SSL_use_PrivateKey(connection, key.get()) != 1) {
+    return false;
+  }
+  SSL_clear_chain_certs(connection);
+  while (const Owned<X509> issuer = next()) {
+    if (SSL_add1_chain_cert(connection, issuer.get()) != 1) return false;
+  }
+  ERR_clear_error();  // the end of the text is one
+  return true;
 }
 
 }  // namespace linetree

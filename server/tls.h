@@ -5,6 +5,8 @@
 
 #include "absl/status/statusor.h"
 
+struct ssl_st;  // OpenSSL's SSL
+
 namespace linetree {
 
 struct TlsFiles {
@@ -23,5 +25,9 @@ struct TlsPems {
 // Reads and checks them: INVALID_ARGUMENT naming flag and file for what is no certificate or key in
 // PEM, for a key that is not the certificate's, and for what cannot be read.
 absl::StatusOr<TlsPems> ReadTls(const TlsFiles& files);
+
+// For one connection by OpenSSL: shows this certificate, with those that follow it. False when
+// OpenSSL does not take them.
+bool ShowCertificate(const TlsPems& pems, ssl_st* connection);
 
 }  // namespace linetree

@@ -13,7 +13,8 @@ grpc::Status TokenProcessor::Process(const InputMetadata& metadata, grpc::AuthCo
   const std::string method =
       path == metadata.end() ? "" : std::string(path->second.data(), path->second.size());
   if (absl::StartsWith(method, "/grpc.")) return grpc::Status::OK;
-  const auto status = CheckCaller(tokens_, Authorization(metadata), Role::kViewer, method);
+  const auto status =
+      CheckCaller(*secrets_.tokens(), Authorization(metadata), Role::kViewer, method);
   if (status.ok()) return grpc::Status::OK;
   metrics_->Count(method, grpc::StatusCode::UNAUTHENTICATED, std::chrono::seconds(0));
   const LogFields fields({{"rpc", method}, {"code", "UNAUTHENTICATED"}});

@@ -9,17 +9,18 @@
 #include <memory>
 
 #include "server/metrics.h"
-#include "server/tokens.h"
+#include "server/secrets.h"
 
 namespace linetree {
 
 // Thread safety: all methods may be called from any thread.
 class TokenProcessor final : public grpc::AuthMetadataProcessor {
  public:
-  // Refused calls have no other place to be counted and logged.
-  TokenProcessor(Tokens tokens, std::shared_ptr<CallMetrics> metrics,
+  // `secrets`, which has tokens, must outlive this. Refused calls have no other place to be counted
+  // and logged.
+  TokenProcessor(const Secrets& secrets, std::shared_ptr<CallMetrics> metrics,
                  std::shared_ptr<spdlog::logger> log)
-      : tokens_(std::move(tokens)), metrics_(std::move(metrics)), log_(std::move(log)) {}
+      : secrets_(secrets), metrics_(std::move(metrics)), log_(std::move(log)) {}
 
   bool IsBlocking() const override { return false; }
   // Calls of other services than ours (health, reflection) pass.
@@ -27,7 +28,7 @@ class TokenProcessor final : public grpc::AuthMetadataProcessor {
                        OutputMetadata* consumed, OutputMetadata* response) override;
 
  private:
-  const Tokens tokens_;
+  const Secrets& secrets_;
   const std::shared_ptr<CallMetrics> metrics_;
   const std::shared_ptr<spdlog::logger> log_;
 };

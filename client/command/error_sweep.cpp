@@ -19,7 +19,7 @@ absl::StatusOr<Frame> Render(Client& client, const std::string& name, FrameReque
                              Mode mode, double epsilon) {
   request.options.mode = mode;
   request.options.max_relative_error = epsilon;
-  return client.RenderFrame(name, request, "", false, {});
+  return client.RenderFrame(name, request, "", {}, {});
 }
 
 // A cold, a warm and a classical frame. Errors of a repetition are those of the others but for what

@@ -8,6 +8,7 @@
 #include "client/command/parse_values.h"
 #include "client/command/table.h"
 #include "core/io/wire.h"
+#include "core/io/wire_frame.h"
 #include "core/policy/policies.h"
 
 namespace linetree {
@@ -247,6 +248,54 @@ void AddSamplingFlags(CLI::App& app, Sampling& sampling) {
       ->group("Rendering");
 }
 
+void AddPriorityFlag(CLI::App& app, ConnectionFlags& flags) {
+  const std::map<std::string, v1::Priority> classes = {{"interactive", v1::PRIORITY_INTERACTIVE},
+                                                       {"batch", v1::PRIORITY_BATCH},
+                                                       {"background", v1::PRIORITY_BACKGROUND}};
+  app.add_option(
+         "--priority", flags.priority,
+         "In which class the server queues the work: interactive, batch or background, which "
+         "get\n64, 8 and 1 parts of what it does; left out: frames interactive, rays batch")
+      ->transform(CLI::CheckedTransformer(classes))
+      ->type_name("CLASS")
+      ->excludes(app.get_option("--local"))
+      ->group("Where");
+}
+
+void AddFormatFlags(CLI::App& app, FrameFormat& format) {
+  const std::map<std::string, FrameCodec> codecs = {{"float", FrameCodec::kFloat},
+                                                    {"half", FrameCodec::kHalf},
+                                                    {"exr", FrameCodec::kExr},
+                                                    {"png", FrameCodec::kPng},
+                                                    {"jpeg", FrameCodec::kJpeg}};
+  auto* codec =
+      app.add_option("--codec", format.codec,
+                     "How the server sends frames. float: as they are; exr: the same, packed;\n"
+                     "half: rounded to 11 bits; png, jpeg: as pictures, for -o files that end so")
+          ->transform(CLI::CheckedTransformer(codecs))
+          ->type_name("CODEC")
+          ->default_str("float")
+          ->excludes(app.get_option("--local"))
+          ->group("Output");
+  app.add_option("--jpeg-quality", format.jpeg_quality, "Of --codec jpeg")
+      ->type_name("PERCENT")
+      ->check(CLI::Range(1, kMaxJpegQuality))
+      ->capture_default_str()
+      ->needs(codec)
+      ->group("Output");
+}
+
+CLI::Option* AddNewestFlag(CLI::App& app, std::optional<double>& rate) {
+  return app
+      .add_option("--newest", rate,
+                  "Send so many viewpoints a second, whether or not frames have come: the server\n"
+                  "keeps the newest one only, and those that it overtakes get no frame")
+      ->type_name("VIEWS_PER_S")
+      ->check(CLI::Range(1e-3, 1e5))
+      ->excludes(app.get_option("--local"))
+      ->group("View");
+}
+
 void AddStatsFlag(CLI::App& app, std::string& stats) {
   app.add_option("--stats", stats, "Write the counters as JSON")
       ->type_name("FILE")
@@ -263,13 +312,13 @@ void AddOutputFlags(CLI::App& app, OutputFlags& flags) {
     layers[std::string(kLayerNames[i])] = static_cast<Layer>(i);
   }
   app.add_option("-o,--output", flags.pictures,
-                 "Picture: .exr (float, all layers) or .png (8-bit sRGB); may be given again")
+                 "Picture: .exr (float, all layers), .png or .jpg (8-bit sRGB); may be given again")
       ->type_name("FILE")
       ->allow_extra_args(false)
-      ->check(HasExtension({".exr", ".png"}))
+      ->check(HasExtension({".exr", ".png", ".jpg", ".jpeg"}))
       ->group("Output");
   app.add_option("--layer", flags.layer,
-                 "What a .png shows: beauty, verdict, source, object or depth")
+                 "What a .png or .jpg shows: beauty, verdict, source, object or depth")
       ->transform(CLI::CheckedTransformer(layers))
       ->type_name("LAYER")
       ->default_str("beauty")

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/io/frame_codec.h"
 #include "core/io/layer_colors.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
@@ -27,8 +28,11 @@ struct ConnectionFlags {
   int threads = 0;                                      // --local only; 0: all hardware threads
   uint64_t memory_bytes = CacheOptions{}.memory_bytes;  // --local only
   std::string policy = kDefaultPolicy;                  // --local only
+  v1::Priority priority = v1::PRIORITY_UNSPECIFIED;     // of a server's work
 };
 void AddConnectionFlags(CLI::App& app, ConnectionFlags& flags);
+// --priority. After AddConnectionFlags.
+void AddPriorityFlag(CLI::App& app, ConnectionFlags& flags);
 
 struct SceneFlags {
   std::string scene;  // FILE or NAME
@@ -62,10 +66,16 @@ void AddLimitsFlags(CLI::App& app, PathLimits& limits);
 // --samples, --sampling and --sample-seed.
 void AddSamplingFlags(CLI::App& app, Sampling& sampling);
 
+// --codec and --jpeg-quality: how a server sends frames. After AddConnectionFlags.
+void AddFormatFlags(CLI::App& app, FrameFormat& format);
+
+// --newest: viewpoints a second. After AddConnectionFlags.
+CLI::Option* AddNewestFlag(CLI::App& app, std::optional<double>& rate);
+
 // -o, --layer and --stats.
 struct OutputFlags {
-  std::vector<std::string> pictures;  // .exr or .png
-  Layer layer = Layer::kBeauty;       // of .png
+  std::vector<std::string> pictures;  // .exr, .png or .jpg
+  Layer layer = Layer::kBeauty;       // of .png and .jpg
   std::string stats{};                // JSON
   bool quiet = false;
 };

@@ -18,6 +18,7 @@ class FrameReport {
   FrameReport(std::string scene, const RenderOptions& options, std::ostream* out);
 
   void Add(const Frame& frame);
+  size_t frames() const { return frames_.size(); }
 
   // scene, scene_version, mode, epsilon and "frames" with a StatsJson each; of a single frame, its
   // keys also at the top level. Requires that there is a frame.

@@ -38,6 +38,8 @@ struct LoadFlags {
   std::optional<double> rate;
   ArrivalOptions arrivals;
   bool stream = false;
+  FrameFormat format;
+  std::optional<double> newest;  // viewpoints a second of each client
   std::vector<LoadObjective> objectives;
   std::string compare;
   std::vector<std::string> plots;  // .svg
@@ -49,7 +51,9 @@ absl::StatusOr<LoadPlan> PlanOf(const LoadFlags& flags) {
   LoadPlan plan{.frames_each = flags.frames,
                 .duration_s = flags.duration_s,
                 .warm_up_frames = flags.warm_up_frames,
-                .stream = flags.stream};
+                .stream = flags.stream,
+                .format = flags.format,
+                .newest = flags.newest};
   plan.frame.width = flags.size.width;
   plan.frame.height = flags.size.height;
   plan.frame.options = flags.options;
@@ -208,12 +212,15 @@ void AddLoopFlags(CLI::App& app, LoadFlags& flags) {
       ->capture_default_str()
       ->needs(rate)
       ->group("Load");
-  app.add_flag("--stream", flags.stream,
-               "A flight for each client in place of single frames; a frame's latency is the time\n"
-               "since the one before it, and the server's times are of frames sent ahead")
-      ->excludes(rate)
-      ->excludes(duration)
-      ->group("Load");
+  auto* stream =
+      app.add_flag(
+             "--stream", flags.stream,
+             "A flight for each client in place of single frames; a frame's latency is the time\n"
+             "since the one before it, and the server's times are of frames sent ahead")
+          ->excludes(rate)
+          ->excludes(duration)
+          ->group("Load");
+  AddNewestFlag(app, flags.newest)->needs(stream)->group("Load");
 }
 
 void AddGoalFlags(CLI::App& app, LoadFlags& flags) {
@@ -254,6 +261,7 @@ void AddFileFlags(CLI::App& app, LoadFlags& flags) {
 
 void AddFlags(CLI::App& app, LoadFlags& flags) {
   AddConnectionFlags(app, flags.connection);
+  AddPriorityFlag(app, flags.connection);
   AddSceneFlags(app, flags.scene);
   AddPathFlags(app, flags);
   AddSizeFlags(app, flags.size);
@@ -272,6 +280,7 @@ void AddFlags(CLI::App& app, LoadFlags& flags) {
   AddLoopFlags(app, flags);
   AddGoalFlags(app, flags);
   AddFileFlags(app, flags);
+  AddFormatFlags(app, flags.format);
 }
 
 }  // namespace
@@ -291,6 +300,8 @@ void AddLoad(CLI::App& parent, Commands& commands) {
       "  linetree load --scene room --path scenes/paths/room_walk.textproto --clients 16 "
       "--overlap 0.5 --warm-up 8 --rate 30 --arrivals poisson --duration 60 --objective p99_ms=100 "
       "--html load.html --stats load.json\n"
+      "  linetree load --scene room --path scenes/paths/room_walk.textproto --stream --newest 30 "
+      "--codec jpeg --priority batch\n"
       "  linetree load --local --scene scenes/face.textproto --path "
       "scenes/paths/face_walk.textproto --duration 20 --stats new.json --compare load.json");
   commands.push_back({app, [flags] { return Load(*flags); }});

@@ -104,6 +104,7 @@ double NetworkMs(const LoadSample& sample) {
 LoadFigures SummarizeLoad(const LoadPhase& phase) {
   LoadFigures figures{.phase = phase.name,
                       .not_begun = phase.not_begun,
+                      .overtaken = phase.overtaken,
                       .cells_built = phase.cells_built,
                       .cells_evicted = phase.cells_evicted};
   double last_s = 0;
@@ -144,6 +145,7 @@ nlohmann::json LoadJson(const LoadFigures& figures) {
           {"refused", figures.refused},
           {"late", figures.late},
           {"not_begun", figures.not_begun},
+          {"overtaken", figures.overtaken},
           {"seconds", figures.seconds},
           {"frames_per_s", figures.frames_per_s},
           {"latency_ms", Json(figures.latency)},

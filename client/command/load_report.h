@@ -30,6 +30,7 @@ struct LoadPhase {
   std::string name{};
   std::vector<LoadSample> samples{};
   uint64_t not_begun = 0;    // were to begin before the time was up, but no client was free
+  uint64_t overtaken = 0;    // viewpoints that a newer one has left without a frame
   uint64_t cells_built = 0;  // of all trees of the scene, since the phase before
   uint64_t cells_evicted = 0;
 };
@@ -69,6 +70,7 @@ struct LoadFigures {
   uint64_t refused = 0;
   uint64_t late = 0;
   uint64_t not_begun = 0;
+  uint64_t overtaken = 0;
   double seconds = 0;  // until the last frame had arrived
   double frames_per_s = 0;
   // Over all frames that were answered, in ms. Latency runs from when the frame was to begin, and

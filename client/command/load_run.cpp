@@ -38,6 +38,7 @@ class PhaseRun {
     for (size_t c = 0; c < clients_.size(); ++c) {
       threads.emplace_back([this, c] {
         if (phase_.arrivals) return FlyOpen(c);
+        if (plan_.stream && plan_.newest) return FlyNewest(c);
         if (plan_.stream) return FlyStream(c);
         FlyClosed(c);
       });
@@ -46,6 +47,7 @@ class PhaseRun {
     if (!error_.ok()) return error_;
     LoadPhase result;
     result.samples = std::move(samples_);
+    result.overtaken = looked_ - std::min<uint64_t>(looked_, result.samples.size());
     if (phase_.arrivals) result.not_begun = phase_.arrivals->size() - result.samples.size();
     return result;
   }
@@ -106,8 +108,8 @@ class PhaseRun {
       std::vector<FrameRequest> requests;
       for (size_t f = next; f < frames; ++f) requests.push_back(RequestOf(client, f));
       double before_s = Now();
-      const absl::Status status =
-          clients_[client]->Fly(plan_.scene, requests, false, [&](size_t, const Frame& frame) {
+      const absl::Status status = clients_[client]->Fly(
+          plan_.scene, requests, plan_.format, [&](size_t, const Frame& frame) {
             LoadSample sample{.client = client, .frame = next++, .intended_s = before_s};
             sample.start_s = before_s;
             before_s = sample.end_s = Now();
@@ -121,11 +123,36 @@ class PhaseRun {
     }
   }
 
+  // A refusal ends the client's flight: what it looks at is not asked for a second time.
+  void FlyNewest(size_t client) {
+    const auto intended_s = [this](uint64_t view) {
+      return static_cast<double>(view) / *plan_.newest;
+    };
+    const auto flight =
+        clients_[client]->Steer(plan_.scene, {.format = plan_.format}, [&](LiveFrame live) {
+          LoadSample sample{
+              .client = client, .frame = live.view, .intended_s = intended_s(live.view)};
+          sample.start_s = sample.intended_s;
+          sample.end_s = Now();
+          Keep(sample, live.frame);
+        });
+    for (size_t frame = 0; frame < FramesOf(client) && !stop_; ++frame) {
+      WaitUntil(intended_s(frame));
+      if (!flight->Look(RequestOf(client, frame)).ok()) break;
+      ++looked_;
+    }
+    const absl::Status status = flight->Land();
+    if (status.ok()) return;
+    LoadSample refused{.client = client, .intended_s = Now()};
+    refused.start_s = refused.end_s = refused.intended_s;
+    KeepRefusal(refused, status);
+  }
+
   // When the client may ask again: later than now after a refusal.
   double Ask(LoadSample& sample) {
     const FrameRequest request = RequestOf(sample.client, sample.frame);
     const absl::StatusOr<Frame> frame =
-        clients_[sample.client]->RenderFrame(plan_.scene, request, "", false, {});
+        clients_[sample.client]->RenderFrame(plan_.scene, request, "", plan_.format, {});
     sample.end_s = Now();
     if (!frame.ok()) return KeepRefusal(sample, frame.status());
     Keep(sample, *frame);
@@ -166,7 +193,8 @@ class PhaseRun {
   const std::function<void(double)>& progress_;
   const Clock::time_point began_ = Clock::now();
   std::atomic<bool> stop_{false};
-  std::atomic<size_t> next_{0};  // of the arrivals
+  std::atomic<size_t> next_{0};      // of the arrivals
+  std::atomic<uint64_t> looked_{0};  // viewpoints of flights by the newest
   std::mutex mutex_;
   std::condition_variable stopped_;
   std::vector<LoadSample> samples_;  // guarded by mutex_

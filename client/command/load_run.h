@@ -32,6 +32,10 @@ struct LoadPlan {
   // Frames by Client::Fly, a flight for each client: frames_each of them, in a closed loop. A
   // frame's latency is the time since the one before it.
   bool stream = false;
+  FrameFormat format{};  // how frames are sent
+  // With `stream`: viewpoints a second of each client, of which the server keeps the newest; a
+  // frame's latency counts from when its viewpoint was to be sent.
+  std::optional<double> newest{};
 };
 
 // One client for each piece; they may be the same object. Phases "warm-up", if there is one, and

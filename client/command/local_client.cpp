@@ -1,5 +1,6 @@
 #include "client/command/local_client.h"
 
+#include <condition_variable>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -71,7 +72,8 @@ absl::Status LocalClient::UnloadScene(const std::string& name) {
 
 absl::StatusOr<Frame> LocalClient::RenderFrame(const std::string& scene,
                                                const FrameRequest& request,
-                                               const std::string& camera_name, bool all_layers,
+                                               const std::string& camera_name,
+                                               const FrameFormat& format,
                                                const Progress& progress) {
   const absl::StatusOr<HostPointer> host = Find(scene);
   if (!host.ok()) return host.status();
@@ -85,7 +87,7 @@ absl::StatusOr<Frame> LocalClient::RenderFrame(const std::string& scene,
   }
   absl::StatusOr<Frame> frame = (*host)->RenderFrame(resolved, pool_, nullptr, progress);
   if (frame.ok()) frame->timing.render_ms = frame->stats.wall_ms;
-  if (frame.ok() && !all_layers) {
+  if (frame.ok() && !format.all_layers) {
     frame->object.clear();
     frame->source.clear();
     frame->verdict.clear();
@@ -95,14 +97,56 @@ absl::StatusOr<Frame> LocalClient::RenderFrame(const std::string& scene,
 }
 
 absl::Status LocalClient::Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
-                              bool all_layers,
+                              const FrameFormat& format,
                               const std::function<void(size_t index, Frame frame)>& on_frame) {
   for (size_t i = 0; i < requests.size(); ++i) {
-    absl::StatusOr<Frame> frame = RenderFrame(scene, requests[i], "", all_layers, nullptr);
+    absl::StatusOr<Frame> frame = RenderFrame(scene, requests[i], "", format, nullptr);
     if (!frame.ok()) return frame.status();
     on_frame(i, *std::move(frame));
   }
   return absl::OkStatus();
+}
+
+std::unique_ptr<LiveFlight> LocalClient::Steer(const std::string& scene, const LiveOptions& options,
+                                               LiveFlight::OnFrame on_frame) {
+  class Flight final : public LiveFlight {
+   public:
+    Flight(LocalClient& client, std::string scene, const FrameFormat& format, OnFrame on_frame)
+        : client_(client),
+          scene_(std::move(scene)),
+          format_(format),
+          on_frame_(std::move(on_frame)) {}
+
+    absl::StatusOr<uint64_t> Look(const FrameRequest& view) override {
+      const std::lock_guard lock(mutex_);
+      if (!status_.ok()) return status_;
+      auto frame = client_.RenderFrame(scene_, view, "", format_, nullptr);
+      status_ = frame.status();
+      if (!frame.ok()) failed_.notify_all();
+      if (!frame.ok()) return status_;
+      on_frame_({.view = looked_, .frame = *std::move(frame)});
+      return looked_++;
+    }
+    bool HasEndedBy(std::chrono::system_clock::time_point time) override {
+      std::unique_lock lock(mutex_);
+      return failed_.wait_until(lock, time, [this] { return !status_.ok(); });
+    }
+    absl::Status Land() override {
+      const std::lock_guard lock(mutex_);
+      return status_;
+    }
+
+   private:
+    LocalClient& client_;
+    const std::string scene_;
+    const FrameFormat format_;
+    const OnFrame on_frame_;
+    std::mutex mutex_;
+    std::condition_variable failed_;
+    uint64_t looked_ = 0;  // guarded by mutex_, as is status_
+    absl::Status status_;
+  };
+  return std::make_unique<Flight>(*this, scene, options.format, std::move(on_frame));
 }
 
 absl::StatusOr<RayBatch> LocalClient::TraceRays(const std::string& scene,

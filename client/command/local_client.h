@@ -21,6 +21,8 @@ class LocalClient : public Client {
   // `policy`, one of AllPolicies.
   LocalClient(int threads, uint64_t memory_bytes, std::string policy = kDefaultPolicy);
 
+  // Frames are floats, whatever codec the format names: nothing is sent.
+
   // As LoadScene, for a scene that has been built already.
   absl::StatusOr<v1::SceneInfo> AddScene(const std::string& name,
                                          std::shared_ptr<const Scene> scene, bool replace);
@@ -38,11 +40,14 @@ class LocalClient : public Client {
   // FAILED_PRECONDITION: nobody else could see the edited scene.
   absl::StatusOr<v1::UpdateSceneReply> UpdateScene(const v1::UpdateSceneRequest& request) override;
   absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
-                                    const std::string& camera_name, bool all_layers,
+                                    const std::string& camera_name, const FrameFormat& format,
                                     const Progress& progress) override;
   absl::Status Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
-                   bool all_layers,
+                   const FrameFormat& format,
                    const std::function<void(size_t index, Frame frame)>& on_frame) override;
+  // Renders in the thread of Look, which nothing overtakes.
+  std::unique_ptr<LiveFlight> Steer(const std::string& scene, const LiveOptions& options,
+                                    LiveFlight::OnFrame on_frame) override;
   absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                      const RenderOptions& options) override;
   absl::StatusOr<v1::GetStatsReply> GetStats(const std::string& scene) override;

@@ -94,6 +94,7 @@ void AddRays(CLI::App& parent, Commands& commands) {
   auto flags = std::make_shared<RaysFlags>();
   CLI::App* app = parent.add_subcommand("rays", "Radiance along rays given as text");
   AddConnectionFlags(*app, flags->connection);
+  AddPriorityFlag(*app, flags->connection);
   AddSceneFlags(*app, flags->scene);
   app->add_option("--input", flags->input,
                   "Rays, one a line: ox oy oz dx dy dz; - is standard input; # starts a comment")
@@ -109,7 +110,8 @@ void AddRays(CLI::App& parent, Commands& commands) {
       "Examples:\n"
       "  echo 0 1 6 0 0 -1 | linetree rays --scene room --input -\n"
       "  linetree rays --local --scene scenes/face.textproto --input rays.txt --json\n"
-      "  linetree rays --scene room --input rays.txt --lanes simd --stats rays.json");
+      "  linetree rays --scene room --input rays.txt --lanes simd --stats rays.json\n"
+      "  linetree rays --scene room --input rays.txt --priority background");
   commands.push_back({app, [flags] { return TraceRays(*flags); }});
 }
 

@@ -22,16 +22,18 @@ struct RenderFlags {
   RenderOptions options;
   Sampling sampling;
   OutputFlags output;
+  FrameFormat format;
   bool explain = false;
   int frames = 1;
 };
 
 absl::StatusOr<Frame> RenderOnce(Client& client, const std::string& scene,
-                                 const FrameRequest& request, const OutputFlags& output,
+                                 const FrameRequest& request, const RenderFlags& flags,
                                  const std::string& label) {
-  ProgressBar bar(!output.quiet && IsTerminal(), label);
-  return client.RenderFrame(scene, request, "", NeedsLayers(output),
-                            [&bar](double share) { bar.Show(share); });
+  ProgressBar bar(!flags.output.quiet && IsTerminal(), label);
+  FrameFormat format = flags.format;
+  format.all_layers = NeedsLayers(flags.output);
+  return client.RenderFrame(scene, request, "", format, [&bar](double share) { bar.Show(share); });
 }
 
 absl::StatusOr<int> Render(const RenderFlags& flags) {
@@ -39,6 +41,7 @@ absl::StatusOr<int> Render(const RenderFlags& flags) {
   std::vector<std::string> files = flags.output.pictures;
   if (!flags.output.stats.empty()) files.push_back(flags.output.stats);
   if (absl::Status status = CheckFolders(files); !status.ok()) return status;
+  if (auto status = CheckFormat(flags.output, flags.format); !status.ok()) return status;
 
   absl::StatusOr<Session> session = OpenSession(flags.connection, flags.scene);
   if (!session.ok()) return session.status();
@@ -51,9 +54,8 @@ absl::StatusOr<int> Render(const RenderFlags& flags) {
                      flags.output.quiet ? nullptr : &std::cout);
   Frame last;
   for (int i = 1; i <= flags.frames; ++i) {
-    absl::StatusOr<Frame> frame =
-        RenderOnce(*session->client, session->scene.name(), request, flags.output,
-                   absl::StrCat("frame ", i, "/", flags.frames));
+    absl::StatusOr<Frame> frame = RenderOnce(*session->client, session->scene.name(), request,
+                                             flags, absl::StrCat("frame ", i, "/", flags.frames));
     if (!frame.ok()) return frame.status();
     report.Add(*frame);
     last = *std::move(frame);
@@ -79,6 +81,7 @@ void AddRender(CLI::App& parent, Commands& commands) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* app = parent.add_subcommand("render", "Render a view of a scene");
   AddConnectionFlags(*app, flags->connection);
+  AddPriorityFlag(*app, flags->connection);
   AddSceneFlags(*app, flags->scene);
   AddViewFlags(*app, flags->view);
   AddSizeFlags(*app, flags->size);
@@ -91,6 +94,7 @@ void AddRender(CLI::App& parent, Commands& commands) {
       ->capture_default_str()
       ->group("Rendering");
   AddOutputFlags(*app, flags->output);
+  AddFormatFlags(*app, flags->format);
   AddExplainFlag(*app, flags->explain);
   app->footer(absl::StrCat(
       "Examples:\n"

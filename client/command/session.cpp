@@ -60,7 +60,8 @@ absl::StatusOr<ClientOptions> ReadClientOptions(const ConnectionFlags& flags) {
       .tls_ca_pem = *std::move(ca),
       .tls_cert_pem = *std::move(cert),
       .tls_key_pem = *std::move(key),
-      .token = *std::move(token)};
+      .token = *std::move(token),
+      .priority = flags.priority};
 }
 
 absl::StatusOr<std::unique_ptr<Client>> Connect(const ConnectionFlags& flags) {

@@ -26,12 +26,11 @@ int main(int argc, char** argv) {
     views[i].camera.eye = {8 * std::cos(angle_rad), 4, 8 * std::sin(angle_rad)};
     views[i].width = views[i].height = 64;
   }
-  const auto flown =
-      (*client)->Fly(argv[2], views, /*all_layers=*/false, [](size_t i, Frame frame) {
-        const FrameStats& stats = frame.stats;
-        std::printf("frame %zu: %.0f %% from the cache\n", i,
-                    100.0 * static_cast<double>(stats.interpolated + stats.replayed) /
-                        static_cast<double>(stats.pixels));
-      });
+  const auto flown = (*client)->Fly(argv[2], views, /*format=*/{}, [](size_t i, Frame frame) {
+    const FrameStats& stats = frame.stats;
+    std::printf("frame %zu: %.0f %% from the cache\n", i,
+                100.0 * static_cast<double>(stats.interpolated + stats.replayed) /
+                    static_cast<double>(stats.pixels));
+  });
   return flown.ok() ? 0 : report(flown);
 }

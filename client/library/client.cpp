@@ -7,6 +7,7 @@
 #include "client/library/channel.h"
 #include "client/library/flight.h"
 #include "client/library/status.h"
+#include "client/library/steer.h"
 #include "core/io/wire.h"
 #include "core/io/wire_frame.h"
 #include "linetree/v1/service.grpc.pb.h"
@@ -53,7 +54,9 @@ class GrpcClient final : public Client {
 
   absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                      const RenderOptions& options) override {
-    auto reply = Call<v1::TraceRaysReply>(&Stub::TraceRays, RaysToWire(scene, rays, options));
+    v1::TraceRaysRequest request = RaysToWire(scene, rays, options);
+    request.set_priority(caller_.options().priority);
+    auto reply = Call<v1::TraceRaysReply>(&Stub::TraceRays, request);
     if (!reply.ok()) return reply.status();
     return RayBatchFromWire(*reply);
   }
@@ -73,11 +76,15 @@ class GrpcClient final : public Client {
   }
 
   absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
-                                    const std::string& camera_name, bool all_layers,
+                                    const std::string& camera_name, const FrameFormat& format,
                                     const Progress& progress) override;
   absl::Status Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
-                   bool all_layers,
+                   const FrameFormat& format,
                    const std::function<void(size_t index, Frame frame)>& on_frame) override;
+  std::unique_ptr<LiveFlight> Steer(const std::string& scene, const LiveOptions& options,
+                                    LiveFlight::OnFrame on_frame) override {
+    return StartLiveFlight(caller_, *stub_, scene, options, std::move(on_frame));
+  }
 
  private:
   using Stub = v1::RadianceCache::Stub;
@@ -104,11 +111,11 @@ absl::Status CheckSize(const FrameRequest& request) {
 }
 
 absl::StatusOr<Frame> GrpcClient::RenderFrame(const std::string& scene, const FrameRequest& request,
-                                              const std::string& camera_name, bool all_layers,
-                                              const Progress& progress) {
+                                              const std::string& camera_name,
+                                              const FrameFormat& format, const Progress& progress) {
   if (auto status = CheckSize(request); !status.ok()) return status;
-  const v1::RenderFrameRequest message =
-      FrameRequestToWire(scene, request, camera_name, all_layers);
+  v1::RenderFrameRequest message = FrameRequestToWire(scene, request, camera_name, format);
+  message.set_priority(caller_.options().priority);
   std::optional<FrameAssembler> assembler;  // once the server has agreed to the size
   absl::Status bad;                         // of what the server sends
   const auto attempt = [&](grpc::ClientContext& context) {
@@ -116,7 +123,7 @@ absl::StatusOr<Frame> GrpcClient::RenderFrame(const std::string& scene, const Fr
     const auto stream = stub_->RenderFrame(&context, message);
     v1::FrameChunk chunk;
     while (bad.ok() && stream->Read(&chunk)) {
-      if (!assembler) assembler.emplace(request.width, request.height, all_layers);
+      if (!assembler) assembler.emplace(request.width, request.height, format);
       bad = assembler->Add(chunk);
       if (!bad.ok()) context.TryCancel();
       if (bad.ok() && progress) progress(assembler->share_done());
@@ -132,12 +139,12 @@ absl::StatusOr<Frame> GrpcClient::RenderFrame(const std::string& scene, const Fr
 }
 
 absl::Status GrpcClient::Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
-                             bool all_layers,
+                             const FrameFormat& format,
                              const std::function<void(size_t index, Frame frame)>& on_frame) {
   for (const FrameRequest& request : requests) {
     if (auto status = CheckSize(request); !status.ok()) return status;
   }
-  return Flight(caller_, *stub_, {scene, requests, all_layers, on_frame}).Run();
+  return Flight(caller_, *stub_, {scene, requests, format, on_frame}).Run();
 }
 
 }  // namespace

@@ -20,7 +20,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/library/live_flight.h"
 #include "client/library/retry.h"
+#include "core/io/frame_codec.h"
 #include "core/render/scene_host.h"
 #include "linetree/v1/service.pb.h"
 
@@ -38,6 +40,9 @@ struct ClientOptions {
   std::string tls_key_pem{};
   // Shown with every call; empty: none.
   std::string token{};
+  // In which class the server queues frames and batches of rays; unspecified: interactive and
+  // batch.
+  v1::Priority priority = v1::PRIORITY_UNSPECIFIED;
 };
 
 class Client {
@@ -57,16 +62,23 @@ class Client {
   virtual absl::StatusOr<v1::UpdateSceneReply> UpdateScene(
       const v1::UpdateSceneRequest& request) = 0;
 
-  // `camera_name` is used when it is set, else request.camera. Layers are empty unless all_layers.
+  // `camera_name` is used when it is set, else request.camera. Layers are empty unless the format
+  // has them. Frame::file holds what comes as a file.
   virtual absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
-                                            const std::string& camera_name, bool all_layers,
+                                            const std::string& camera_name,
+                                            const FrameFormat& format,
                                             const Progress& progress) = 0;
 
   // Sends the requests in order over one stream and hands each frame to `on_frame` as it arrives,
   // each once and in order. When the stream breaks, another takes over.
   virtual absl::Status Fly(const std::string& scene, const std::vector<FrameRequest>& requests,
-                           bool all_layers,
+                           const FrameFormat& format,
                            const std::function<void(size_t index, Frame frame)>& on_frame) = 0;
+
+  // Begins a flight whose viewpoints come while it lasts: see live_flight.h. It must end before the
+  // client does.
+  virtual std::unique_ptr<LiveFlight> Steer(const std::string& scene, const LiveOptions& options,
+                                            LiveFlight::OnFrame on_frame) = 0;
 
   virtual absl::StatusOr<RayBatch> TraceRays(const std::string& scene, const std::vector<Ray>& rays,
                                              const RenderOptions& options) = 0;

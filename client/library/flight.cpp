@@ -65,13 +65,14 @@ v1::FlyRequest Flight::RequestFor(size_t index) const {
   message.set_pacing(v1::PACING_EVERY);
   if (index == next_) message.set_resume_token(resume_token_);
   *message.mutable_frame() =
-      FrameRequestToWire(plan_.scene, plan_.requests[index], "", plan_.all_layers);
+      FrameRequestToWire(plan_.scene, plan_.requests[index], "", plan_.format);
+  message.mutable_frame()->set_priority(caller_.options().priority);
   return message;
 }
 
 absl::StatusOr<Frame> Flight::ReadFrame(Stream& stream) {
   const FrameRequest& request = plan_.requests[next_];
-  FrameAssembler assembler(request.width, request.height, plan_.all_layers);
+  FrameAssembler assembler(request.width, request.height, plan_.format);
   v1::FlyReply reply;
   while (!assembler.complete()) {
     if (!stream.Read(&reply)) return absl::OutOfRangeError("the server ended the flight early");

@@ -14,7 +14,7 @@ namespace linetree {
 struct FlightPlan {
   const std::string& scene;
   const std::vector<FrameRequest>& requests;
-  bool all_layers;
+  const FrameFormat& format;
   const std::function<void(size_t index, Frame frame)>& on_frame;
 };
 

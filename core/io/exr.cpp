@@ -14,6 +14,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,27 @@ class MemoryStream : public Imf::OStream {
 
  private:
   std::string bytes_;
+  size_t position_ = 0;
+};
+
+// OpenEXR throws at the end of a file that is too short.
+class MemoryReader : public Imf::IStream {
+ public:
+  explicit MemoryReader(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  bool read(char c[], int n) override {
+    const size_t size = static_cast<size_t>(n);
+    if (position_ > bytes_.size() || size > bytes_.size() - position_) {
+      throw std::runtime_error("unexpected end of file");
+    }
+    std::memcpy(c, bytes_.data() + position_, size);
+    position_ += size;
+    return position_ < bytes_.size();
+  }
+  uint64_t tellg() override { return position_; }
+  void seekg(uint64_t position) override { position_ = position; }
+
+ private:
+  const std::string& bytes_;
   size_t position_ = 0;
 };
 
@@ -166,15 +188,51 @@ absl::Status UnpackLayers(const UintLayers& layers, Frame& frame) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Frame> DecodeExr(const std::string& path) {
-  Imf::InputFile file(path.c_str());
+// OpenEXR sets memory aside for whatever a header claims, so what it claims is looked at before.
+// Layout: a magic number and a version, 4 bytes each; then attributes: name and type, each up to a
+// zero, 4 bytes of size, and the value. An empty name ends them.
+absl::Status CheckHeader(std::string_view bytes, int64_t max_pixels) {
+  const auto number = [&](size_t at) {
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; ++i) value |= (bytes[at + i] & 0xffu) << (8 * i);
+    return value;
+  };
+  const auto bad = [](absl::string_view what) {
+    return absl::InvalidArgumentError(absl::StrCat("expected an OpenEXR file: ", what));
+  };
+  constexpr uint32_t kOnePartOfLines = 2;
+  if (bytes.size() < 8 || number(4) != kOnePartOfLines) return bad("of one part, by lines");
+  size_t at = 8;
+  while (at < bytes.size() && bytes[at] != 0) {
+    const size_t name_end = bytes.find('\0', at);
+    const size_t type_end = name_end == bytes.npos ? bytes.npos : bytes.find('\0', name_end + 1);
+    if (type_end == bytes.npos || bytes.size() - type_end < 5) return bad("its header is cut off");
+    const std::string_view name = bytes.substr(at, name_end - at);
+    const size_t size = number(type_end + 1);
+    at = type_end + 5;
+    if (size > bytes.size() - at) return bad("an attribute ends behind its end");
+    if (name == "dataWindow" && size == 16) {
+      const auto side = [&](size_t axis) {
+        return int64_t{static_cast<int32_t>(number(at + 8 + 4 * axis))} -
+               static_cast<int32_t>(number(at + 4 * axis)) + 1;
+      };
+      if (side(0) < 1 || side(1) < 1 || side(0) > max_pixels || side(1) > max_pixels) {
+        return bad(absl::StrCat("of at most ", max_pixels, " pixels"));
+      }
+    }
+    at += size;
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Frame> Decode(Imf::InputFile& file, int64_t max_pixels) {
   const Imf::Header& header = file.header();
   const Imath::Box2i window = header.dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1;
   const int64_t height = int64_t{window.max.y} - window.min.y + 1;
-  if (width > kMaxExrPixels || height > kMaxExrPixels || width * height > kMaxExrPixels) {
+  if (width > max_pixels || height > max_pixels || width * height > max_pixels) {
     return absl::InvalidArgumentError(
-        absl::StrCat("expected at most ", kMaxExrPixels, " pixels, found ", width, " x ", height));
+        absl::StrCat("expected at most ", max_pixels, " pixels, found ", width, " x ", height));
   }
   for (const char* channel : {"R", "G", "B"}) {
     if (header.channels().findChannel(channel) == nullptr) {
@@ -241,6 +299,17 @@ absl::Status WriteExr(const Frame& frame, const std::string& path) {
   return WriteFileAtomically(path, EncodeExr(frame));
 }
 
+absl::StatusOr<Frame> DecodeExr(const std::string& bytes, int64_t max_pixels) {
+  if (auto status = CheckHeader(bytes, max_pixels); !status.ok()) return status;
+  try {
+    MemoryReader reader(bytes);
+    Imf::InputFile file(reader);
+    return Decode(file, max_pixels);
+  } catch (const std::exception& e) {
+    return absl::InvalidArgumentError(absl::StrCat("expected an OpenEXR file: ", e.what()));
+  }
+}
+
 absl::StatusOr<Frame> ReadExr(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -248,7 +317,8 @@ absl::StatusOr<Frame> ReadExr(const std::string& path) {
   }
   // OpenEXR reports by exceptions; they end here.
   try {
-    absl::StatusOr<Frame> frame = DecodeExr(path);
+    Imf::InputFile file(path.c_str());
+    absl::StatusOr<Frame> frame = Decode(file, kMaxExrPixels);
     if (frame.ok()) return frame;
     return absl::Status(frame.status().code(), absl::StrCat(path, ": ", frame.status().message()));
   } catch (const std::exception& e) {

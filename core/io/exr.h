@@ -34,6 +34,10 @@ std::string EncodeExr(const Frame& frame);
 // Writes the whole file or nothing (atomic_file.h).
 absl::Status WriteExr(const Frame& frame, const std::string& path);
 
+// As ReadExr, of the bytes of a file as EncodeExr makes them, of at most so many pixels: what takes
+// more memory than that is refused before it does.
+absl::StatusOr<Frame> DecodeExr(const std::string& bytes, int64_t max_pixels = kMaxExrPixels);
+
 // Reads any EXR file that has R, G and B; layers and attributes are taken where they are present
 // (layers need all five channels), stats stay at their defaults but for the number of pixels.
 // NOT_FOUND, or INVALID_ARGUMENT naming the file and what is wrong with it.

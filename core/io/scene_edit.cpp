@@ -4,6 +4,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "core/io/validate.h"
 #include "core/io/wire.h"
 
 namespace linetree {
@@ -51,7 +52,9 @@ class Editor {
     switch (edit.edit_case()) {
       case v1::SceneEdit::kMoveObject:
         return WithObject(edit.move_object().object(), ".move_object.object", [&](int i) {
-          scene_.mutable_objects(i)->mutable_transform()->MergeFrom(edit.move_object().transform());
+          v1::Object& object = *scene_.mutable_objects(i);
+          object.mutable_transform()->MergeFrom(edit.move_object().transform());
+          FoldTransform(object);  // or a scene that is moved again and again would grow
         });
       case v1::SceneEdit::kAddObject:
         *scene_.add_objects() = edit.add_object();

@@ -224,8 +224,11 @@ absl::StatusOr<Camera> ReadCamera(const SceneSource& source, const std::string& 
   return InField(source, path, absl::InvalidArgumentError(text));
 }
 
-absl::StatusOr<AffineMap> ReadTransform(const SceneSource& source, const std::string& path,
-                                        const v1::Object& message) {
+namespace {
+
+// Of the steps, without asking whether it can be inverted.
+absl::StatusOr<AffineMap> ReadProduct(const SceneSource& source, const std::string& path,
+                                      const v1::Object& message) {
   AffineMap map;
   for (int i = 0; i < message.transform_size(); ++i) {
     const std::string step_path = absl::StrCat(path, ".transform[", i, "]");
@@ -233,7 +236,34 @@ absl::StatusOr<AffineMap> ReadTransform(const SceneSource& source, const std::st
     if (!step.ok()) return step.status();
     map = Then(map, *step);
   }
-  if (auto inverse = InverseLinear(map); !inverse.ok()) {
+  return map;
+}
+
+}  // namespace
+
+void FoldTransform(v1::Object& object) {
+  if (object.transform_size() < 2) return;
+  const auto nowhere = SceneFromMessage({});
+  const auto map = ReadProduct(*nowhere, "", object);
+  if (!map.ok()) return;
+  v1::Object folded;
+  auto& numbers = *folded.add_transform()->mutable_matrix()->mutable_row_major_3x4();
+  for (int row = 0; row < 3; ++row) {
+    const Vec3d& linear = map->linear.row[static_cast<size_t>(row)];
+    for (const double number : {linear.x, linear.y, linear.z, map->translation[row]}) {
+      numbers.Add(number);
+    }
+  }
+  const auto read_back = ReadProduct(*nowhere, "", folded);
+  if (read_back.ok() && *read_back == *map)
+    object.mutable_transform()->Swap(folded.mutable_transform());
+}
+
+absl::StatusOr<AffineMap> ReadTransform(const SceneSource& source, const std::string& path,
+                                        const v1::Object& message) {
+  auto map = ReadProduct(source, path, message);
+  if (!map.ok()) return map;
+  if (auto inverse = InverseLinear(*map); !inverse.ok()) {
     return InField(source, path, inverse.status());
   }
   return map;

@@ -22,6 +22,10 @@ absl::StatusOr<Light> ReadLight(const SceneSource& source, const std::string& pa
 absl::StatusOr<Camera> ReadCamera(const SceneSource& source, const std::string& path,
                                   const v1::Camera& message);
 
+// Puts one step, a matrix, in the place of several: the same map bit for bit (but for the sign of
+// zeros), and so the same scene. Leaves them where they, or the matrix, are not valid.
+void FoldTransform(v1::Object& object);
+
 // The product of an object's steps, in the order written; invertible. The path is the object's.
 absl::StatusOr<AffineMap> ReadTransform(const SceneSource& source, const std::string& path,
                                         const v1::Object& message);

@@ -6,6 +6,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "core/io/wire_frame.h"
 
 namespace linetree {
 namespace {
@@ -132,7 +133,8 @@ absl::StatusOr<Sampling> SamplingFromWire(const v1::Sampling& message, absl::str
 }
 
 v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameRequest& request,
-                                          const std::string& camera_name, bool all_layers) {
+                                          const std::string& camera_name,
+                                          const FrameFormat& format) {
   v1::RenderFrameRequest message;
   message.set_scene(scene);
   if (camera_name.empty()) {
@@ -143,7 +145,7 @@ v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameR
   message.set_width(static_cast<uint32_t>(request.width));
   message.set_height(static_cast<uint32_t>(request.height));
   *message.mutable_options() = RenderOptionsToWire(request.options);
-  message.set_all_layers(all_layers);
+  FrameFormatToWire(format, &message);
   *message.mutable_sampling() = SamplingToWire(request.sampling);
   return message;
 }

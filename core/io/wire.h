@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "core/audit/live_audit.h"
+#include "core/io/frame_codec.h"
 #include "core/render/scene_host.h"
 #include "core/store/scene_pages.h"
 #include "linetree/v1/service.pb.h"
@@ -40,7 +41,8 @@ absl::StatusOr<Sampling> SamplingFromWire(const v1::Sampling& message, absl::str
 
 // `camera_name` is sent when it is not empty, else request.camera.
 v1::RenderFrameRequest FrameRequestToWire(const std::string& scene, const FrameRequest& request,
-                                          const std::string& camera_name, bool all_layers);
+                                          const std::string& camera_name,
+                                          const FrameFormat& format = {});
 // `scene` is the scene that the message names. NOT_FOUND for an unknown camera name.
 absl::StatusOr<FrameRequest> FrameRequestFromWire(const v1::RenderFrameRequest& message,
                                                   const Scene& scene, const RenderOptions& defaults,
@@ -60,7 +62,11 @@ absl::StatusOr<RayBatch> RayBatchFromWire(const v1::TraceRaysReply& message);
 v1::FrameStats FrameStatsToWire(const FrameStats& stats, int width, int height);
 FrameStats FrameStatsFromWire(const v1::FrameStats& message);
 
-// What the host has done and holds; cells by verdict for the objects that have any.
+// What the host has done and holds, in sums that are kept anyway.
+v1::GetStatsReply::SceneStats SceneSumsToWire(const std::string& name, SceneHost& host);
+// Adds cells by verdict for the objects that have any; looks at every certified cell.
+void CellVerdictsToWire(SceneHost& host, v1::GetStatsReply::SceneStats* stats);
+// Both.
 v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host);
 
 v1::GetStatsReply::AuditStats AuditStatsToWire(const AuditCounts::Values& counts);

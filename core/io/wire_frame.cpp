@@ -5,11 +5,15 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "core/io/exr.h"
 #include "core/io/wire.h"
 #include "core/math/check.h"
 
 namespace linetree {
 namespace {
+
+// What a file holds beside its pixels, at most: headers, attributes, tables of lines.
+constexpr uint64_t kMaxFileHeaderBytes = uint64_t{1} << 20;
 
 // Index of the first pixel of row `row` of the tile within the frame.
 size_t RowStart(const v1::Tile& tile, int row, int frame_width) {
@@ -33,6 +37,13 @@ void AppendHalves(const std::vector<float>& layer, size_t start, size_t count, s
     out->push_back(static_cast<char>(bits & 0xff));
     out->push_back(static_cast<char>(bits >> 8));
   }
+}
+
+float HalfAt(const std::string& bytes, size_t index) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned>(bytes[i] & 0xff); };
+  Imath::half half;
+  half.setBits(static_cast<uint16_t>(byte(2 * index) | byte(2 * index + 1) << 8));
+  return half;
 }
 
 bool AllBelow(const std::string& bytes, int limit) {
@@ -66,6 +77,13 @@ absl::StatusOr<FrameFormat> FrameFormatFromWire(const v1::RenderFrameRequest& me
                      v1::Codec_Name(message.codec())));
   }
   return format;
+}
+
+void FrameFormatToWire(const FrameFormat& format, v1::RenderFrameRequest* message) {
+  message->set_all_layers(format.all_layers);
+  message->set_codec(static_cast<v1::Codec>(static_cast<int>(format.codec) + 1));
+  if (format.codec != FrameCodec::kJpeg) return;
+  message->set_jpeg_quality(static_cast<uint32_t>(format.jpeg_quality));
 }
 
 absl::StatusOr<FrameChunks> FrameChunks::Make(Frame frame, const FrameFormat& format) {
@@ -155,14 +173,15 @@ void FrameChunks::FillEnd(v1::FrameEnd* end) const {
   *end->mutable_sampling() = SamplingToWire(frame_.sampling);
 }
 
-FrameAssembler::FrameAssembler(int width, int height, bool all_layers) : all_layers_(all_layers) {
+FrameAssembler::FrameAssembler(int width, int height, const FrameFormat& format) : format_(format) {
   LT_CHECK(width > 0 && height > 0);
   const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
   frame_.width = width;
   frame_.height = height;
+  if (IsFile(format.codec)) return;
   frame_.radiance.resize(3 * pixels);
   filled_.resize(pixels);
-  if (!all_layers) return;
+  if (!format.all_layers) return;
   frame_.object.resize(pixels);
   frame_.source.resize(pixels);
   frame_.verdict.resize(pixels);
@@ -172,16 +191,47 @@ FrameAssembler::FrameAssembler(int width, int height, bool all_layers) : all_lay
 absl::Status FrameAssembler::Add(const v1::FrameChunk& chunk) {
   if (complete_) return absl::DataLossError("a chunk came after the end of its frame");
   frame_.wire_bytes += chunk.ByteSizeLong();
-  switch (chunk.content_case()) {
-    case v1::FrameChunk::kTile:
-      return AddTile(chunk.tile());
-    case v1::FrameChunk::kEnd:
-      return AddEnd(chunk.end());
-    case v1::FrameChunk::kFile:
-    case v1::FrameChunk::CONTENT_NOT_SET:
-      break;
+  if (chunk.has_end()) return AddEnd(chunk.end());
+  const bool is_file = IsFile(format_.codec);
+  if (is_file && chunk.has_file()) return AddPart(chunk.file());
+  if (!is_file && chunk.has_tile()) return AddTile(chunk.tile());
+  return absl::DataLossError(absl::StrCat("a chunk came with neither ",
+                                          is_file ? "a part of a file" : "a tile", " nor an end"));
+}
+
+absl::Status FrameAssembler::AddPart(const v1::FilePart& part) {
+  const auto pixels = static_cast<uint64_t>(frame_.width) * static_cast<uint64_t>(frame_.height);
+  const uint64_t most = kMaxFileHeaderBytes + pixels * FileBytesPerPixel(format_.codec);
+  if (frame_.file.empty()) file_bytes_ = part.file_bytes();
+  if (file_bytes_ > most || part.file_bytes() != file_bytes_ || part.data().empty() ||
+      part.offset() != frame_.file.size() ||
+      part.data().size() > file_bytes_ - frame_.file.size()) {
+    return absl::DataLossError(absl::StrCat("a part of a file does not fit: ", part.data().size(),
+                                            " bytes at ", part.offset(), " of ",
+                                            part.file_bytes()));
   }
-  return absl::DataLossError("a chunk came with neither a tile nor an end");
+  frame_.file += part.data();
+  return absl::OkStatus();
+}
+
+absl::Status FrameAssembler::TakeFile() {
+  if (frame_.file.empty() || frame_.file.size() != file_bytes_) {
+    return absl::DataLossError(absl::StrCat("a frame ended with ", frame_.file.size(), " of ",
+                                            file_bytes_, " bytes of its file"));
+  }
+  if (format_.codec != FrameCodec::kExr) return absl::OkStatus();
+  auto decoded = DecodeExr(frame_.file, int64_t{frame_.width} * frame_.height);
+  if (!decoded.ok()) return absl::DataLossError(decoded.status().message());
+  if (decoded->width != frame_.width || decoded->height != frame_.height ||
+      decoded->depth.empty() == format_.all_layers) {
+    return absl::DataLossError("a file came with another size or other layers than asked for");
+  }
+  frame_.radiance = std::move(decoded->radiance);
+  frame_.object = std::move(decoded->object);
+  frame_.source = std::move(decoded->source);
+  frame_.verdict = std::move(decoded->verdict);
+  frame_.depth = std::move(decoded->depth);
+  return absl::OkStatus();
 }
 
 absl::Status FrameAssembler::CheckTile(const v1::Tile& tile) const {
@@ -193,8 +243,10 @@ absl::Status FrameAssembler::CheckTile(const v1::Tile& tile) const {
                                             " at ", tile.x(), ",", tile.y()));
   }
   const auto pixels = static_cast<size_t>(width * height);
-  const size_t layer = all_layers_ ? pixels : 0;
-  if (static_cast<size_t>(tile.radiance_size()) != 3 * pixels ||
+  const size_t layer = format_.all_layers ? pixels : 0;
+  const bool is_half = format_.codec == FrameCodec::kHalf;
+  if (static_cast<size_t>(tile.radiance_size()) != (is_half ? 0 : 3 * pixels) ||
+      tile.radiance_half().size() != (is_half ? 6 * pixels : 0) ||
       static_cast<size_t>(tile.object_size()) != layer || tile.source().size() != layer ||
       tile.verdict().size() != layer || static_cast<size_t>(tile.depth_size()) != layer) {
     return absl::DataLossError("a tile came with a layer of the wrong length");
@@ -222,8 +274,14 @@ absl::Status FrameAssembler::AddTile(const v1::Tile& tile) {
 
 void FrameAssembler::CopyRow(const v1::Tile& tile, size_t from, size_t to) {
   const size_t width = tile.width();
-  std::copy_n(tile.radiance().data() + 3 * from, 3 * width, frame_.radiance.data() + 3 * to);
-  if (!all_layers_) return;
+  if (format_.codec == FrameCodec::kHalf) {
+    for (size_t i = 0; i < 3 * width; ++i) {
+      frame_.radiance[3 * to + i] = HalfAt(tile.radiance_half(), 3 * from + i);
+    }
+  } else {
+    std::copy_n(tile.radiance().data() + 3 * from, 3 * width, frame_.radiance.data() + 3 * to);
+  }
+  if (!format_.all_layers) return;
   std::copy_n(tile.object().data() + from, width, frame_.object.data() + to);
   std::copy_n(tile.depth().data() + from, width, frame_.depth.data() + to);
   for (size_t i = 0; i < width; ++i) {
@@ -236,6 +294,9 @@ absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
   if (pixels_filled_ != filled_.size()) {
     return absl::DataLossError(
         absl::StrCat("a frame ended with ", pixels_filled_, " of ", filled_.size(), " pixels"));
+  }
+  if (IsFile(format_.codec)) {
+    if (auto status = TakeFile(); !status.ok()) return status;
   }
   const auto sampling = SamplingFromWire(end.sampling(), "");
   if (!sampling.ok()) return absl::DataLossError(sampling.status().message());
@@ -252,6 +313,11 @@ absl::Status FrameAssembler::AddEnd(const v1::FrameEnd& end) {
 }
 
 double FrameAssembler::share_done() const {
+  if (IsFile(format_.codec)) {
+    return file_bytes_ == 0
+               ? 0
+               : static_cast<double>(frame_.file.size()) / static_cast<double>(file_bytes_);
+  }
   return static_cast<double>(pixels_filled_) / static_cast<double>(filled_.size());
 }
 

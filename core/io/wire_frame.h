@@ -53,10 +53,14 @@ class FrameChunks {
   int y_ = 0;  // frame_.height when only the end is left
 };
 
-// Puts a frame together again. The sender is not trusted: what does not fit is DATA_LOSS.
+// What asks for the format: the request's codec, jpeg_quality and all_layers.
+void FrameFormatToWire(const FrameFormat& format, v1::RenderFrameRequest* message);
+
+// Puts a frame together again, from tiles of floats or halves, from an EXR file, or from a picture,
+// which stays the file that it is. The sender is not trusted: what does not fit is DATA_LOSS.
 class FrameAssembler {
  public:
-  FrameAssembler(int width, int height, bool all_layers);
+  FrameAssembler(int width, int height, const FrameFormat& format);
 
   absl::Status Add(const v1::FrameChunk& chunk);
 
@@ -71,12 +75,16 @@ class FrameAssembler {
   absl::Status AddTile(const v1::Tile& tile);
   // Pixels of the tile's row that starts at its pixel `from` to the frame's pixels from `to` on.
   void CopyRow(const v1::Tile& tile, size_t from, size_t to);
+  absl::Status AddPart(const v1::FilePart& part);
+  // Of a file that is complete.
+  absl::Status TakeFile();
   absl::Status AddEnd(const v1::FrameEnd& end);
 
   Frame frame_;
-  bool all_layers_;
-  std::vector<bool> filled_;  // by pixel
+  FrameFormat format_;
+  std::vector<bool> filled_;  // by pixel; empty for files
   size_t pixels_filled_ = 0;
+  uint64_t file_bytes_ = 0;  // that the file is to have
   bool complete_ = false;
 };
 

@@ -97,7 +97,7 @@ FrameStats FrameStatsFromWire(const v1::FrameStats& message) {
   return stats;
 }
 
-v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host) {
+v1::GetStatsReply::SceneStats SceneSumsToWire(const std::string& name, SceneHost& host) {
   const HostTotals totals = host.totals();
   v1::GetStatsReply::SceneStats stats;
   stats.set_scene(name);
@@ -122,18 +122,25 @@ v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHos
   stats.mutable_ahead()->set_frames(ahead.frames);
   stats.mutable_ahead()->set_cells_built(ahead.cells.built);
   stats.mutable_ahead()->set_cells_used(ahead.cells.used);
+  return stats;
+}
+
+void CellVerdictsToWire(SceneHost& host, v1::GetStatsReply::SceneStats* stats) {
   std::vector<Counts> cells = host.cache().CellVerdicts();
   const std::vector<Counts> certified = host.paths().CellVerdicts();
   for (size_t object = 0; object < cells.size(); ++object) {
     for (size_t v = 0; v < kVerdictCount; ++v) cells[object][v] += certified[object][v];
-  }
-  for (size_t object = 0; object < cells.size(); ++object) {
     if (cells[object] == Counts{}) continue;
-    v1::GetStatsReply::ObjectStats* out = stats.add_objects();
+    v1::GetStatsReply::ObjectStats* out = stats->add_objects();
     out->set_object(static_cast<uint32_t>(object));
     out->set_name(host.scene().objects[object].name);
     CountsToWire(cells[object], out->mutable_cells());
   }
+}
+
+v1::GetStatsReply::SceneStats SceneStatsToWire(const std::string& name, SceneHost& host) {
+  v1::GetStatsReply::SceneStats stats = SceneSumsToWire(name, host);
+  CellVerdictsToWire(host, &stats);
   return stats;
 }
 

@@ -152,8 +152,10 @@ HWY_INLINE bool MeetCappedFrustum(const FrustumLines& line, const LateralRoots& 
   const Mask maybe = chord.MayMeet(root.maybe);
   if (!Any(maybe)) return false;
   const Mask sure = chord.Meets(root.sure);
+  // Clang 14 takes no structured bindings into lambdas.
   const auto crossing = [&](const Mask& certain, const Floats& low, const Floats& high) HWY_ATTR {
-    return LaneCrossing{maybe, certain, MulAdd(low, scale, from), MulAdd(high, scale, from)};
+    return LaneCrossing{maybe, certain, MulAdd(low, line.scale, line.from),
+                        MulAdd(high, line.scale, line.from)};
   };
   c.in = crossing(sure, chord.in_low, chord.in_high);
   c.out = crossing(sure, chord.out_low, chord.out_high);

@@ -83,6 +83,8 @@ struct Frame {
   // Of frames that a server has sent; else 0.
   FrameTiming timing;
   uint64_t wire_bytes = 0;  // of its messages
+  // The file, where it was asked for as one (FrameCodec); as a picture it has no radiance.
+  std::string file{};
 };
 
 }  // namespace linetree

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <condition_variable>
 #include <future>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -61,6 +63,7 @@ class ScriptedService : public v1::RadianceCache::Service {
         return {failure, "engine failure"};
       }
     }
+    if (hold.valid()) hold.wait();
     return grpc::Status::OK;
   }
 
@@ -191,7 +194,7 @@ TEST_F(ClientTest, NobodyThere) {
 
 TEST_F(ClientTest, AWholeFrameArrives) {
   service_.chunks = ChunksOf(100, 70);
-  const auto frame = Connect()->RenderFrame("room", RequestOf(100, 70), "", false, nullptr);
+  const auto frame = Connect()->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
   EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
 }
@@ -200,7 +203,7 @@ TEST_F(ClientTest, AFrameThatBreaksOffIsAskedForAgain) {
   service_.chunks = ChunksOf(100, 70);
   service_.failures = 1;
   const auto frame =
-      Connect({.retry = kQuick})->RenderFrame("room", RequestOf(100, 70), "", false, nullptr);
+      Connect({.retry = kQuick})->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
   EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
   EXPECT_EQ(service_.calls, 2);
@@ -210,27 +213,27 @@ TEST_F(ClientTest, AFrameWithoutItsEndIsDataLoss) {
   service_.chunks = ChunksOf(100, 70);
   service_.chunks.pop_back();
   const auto client = Connect();
-  EXPECT_TRUE(absl::IsDataLoss(
-      client->RenderFrame("room", RequestOf(100, 70), "", false, nullptr).status()));
+  EXPECT_TRUE(
+      absl::IsDataLoss(client->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr).status()));
   service_.chunks.clear();
-  EXPECT_TRUE(absl::IsDataLoss(
-      client->RenderFrame("room", RequestOf(100, 70), "", false, nullptr).status()));
+  EXPECT_TRUE(
+      absl::IsDataLoss(client->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr).status()));
 }
 
 TEST_F(ClientTest, AFrameOfAnotherSizeIsDataLoss) {
   service_.chunks = ChunksOf(100, 70);
   EXPECT_TRUE(absl::IsDataLoss(
-      Connect()->RenderFrame("room", RequestOf(90, 70), "", false, nullptr).status()));
+      Connect()->RenderFrame("room", RequestOf(90, 70), "", {}, nullptr).status()));
   EXPECT_TRUE(absl::IsDataLoss(
-      Connect()->Fly("room", {RequestOf(101, 70)}, false, [](size_t, const Frame&) {})));
+      Connect()->Fly("room", {RequestOf(101, 70)}, {}, [](size_t, const Frame&) {})));
 }
 
 TEST_F(ClientTest, SizesThatNoFrameHasAreNotSent) {
   for (const auto& [width, height] : {std::pair(0, 5), {5, -1}}) {
     EXPECT_TRUE(absl::IsInvalidArgument(
-        Connect()->RenderFrame("room", RequestOf(width, height), "", false, nullptr).status()));
+        Connect()->RenderFrame("room", RequestOf(width, height), "", {}, nullptr).status()));
     EXPECT_TRUE(absl::IsInvalidArgument(
-        Connect()->Fly("room", {RequestOf(width, height)}, false, [](size_t, const Frame&) {})));
+        Connect()->Fly("room", {RequestOf(width, height)}, {}, [](size_t, const Frame&) {})));
   }
 }
 
@@ -238,14 +241,14 @@ TEST_F(ClientTest, AFlightDeliversInOrder) {
   service_.chunks = ChunksOf(8, 8);
   size_t expected = 0;
   const auto status =
-      Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), false,
+      Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), {},
                      [&](size_t index, const Frame&) { EXPECT_EQ(index, expected++); });
   EXPECT_TRUE(status.ok()) << status;
   EXPECT_EQ(expected, 50u);
 }
 
 TEST_F(ClientTest, AFlightOfNoFramesIsFine) {
-  EXPECT_TRUE(Connect()->Fly("room", {}, false, [](size_t, const Frame&) { FAIL(); }).ok());
+  EXPECT_TRUE(Connect()->Fly("room", {}, {}, [](size_t, const Frame&) { FAIL(); }).ok());
 }
 
 TEST_F(ClientTest, AFlightThatFailsHasTheServersWords) {
@@ -253,7 +256,7 @@ TEST_F(ClientTest, AFlightThatFailsHasTheServersWords) {
   service_.frames_before_failure = 3;
   service_.failure = grpc::StatusCode::NOT_FOUND;
   int frames = 0;
-  const auto status = Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), false,
+  const auto status = Connect()->Fly("room", std::vector<FrameRequest>(50, RequestOf(8, 8)), {},
                                      [&](size_t, const Frame&) { ++frames; });
   EXPECT_TRUE(absl::IsNotFound(status)) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("engine failure"));
@@ -267,7 +270,7 @@ TEST_F(ClientTest, AFlightGoesOnWithTheFirstFrameThatIsMissing) {
   size_t expected = 0;
   // Each stream brings something on, so there may be more of them than attempts.
   const auto status = Connect({.retry = kQuick})
-                          ->Fly("room", std::vector<FrameRequest>(20, RequestOf(8, 8)), false,
+                          ->Fly("room", std::vector<FrameRequest>(20, RequestOf(8, 8)), {},
                                 [&](size_t index, const Frame&) { EXPECT_EQ(index, expected++); });
   EXPECT_TRUE(status.ok()) << status;
   EXPECT_EQ(expected, 20u);
@@ -280,10 +283,66 @@ TEST_F(ClientTest, AFlightThatGetsNowhereEnds) {
   service_.frames_before_failure = 1;
   service_.frames_between_failures = 1;
   const auto status =
-      Connect({.retry = kQuick})->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) {
-      });
+      Connect({.retry = kQuick})->Fly("room", {RequestOf(8, 8)}, {}, [](size_t, const Frame&) {});
   EXPECT_TRUE(absl::IsUnavailable(status)) << status;
   EXPECT_EQ(service_.streams_begin_with.size(), static_cast<size_t>(kQuick.max_attempts));
+}
+
+// Frames come back one for each request here, so none is lost when nothing else is sent meanwhile.
+TEST_F(ClientTest, ALiveFlightGoesOnWithTheNewestViewpoint) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.frames_before_failure = 1;
+  service_.frames_between_failures = 1;
+  const auto client = Connect({.retry = kQuick});
+  std::mutex mutex;
+  std::condition_variable came;
+  std::vector<uint64_t> views;
+  const auto flight = client->Steer("room", {}, [&](const LiveFrame& frame) {
+    const std::lock_guard lock(mutex);
+    views.push_back(frame.view);
+    came.notify_all();
+  });
+  for (uint64_t view = 0; view < 10; ++view) {
+    EXPECT_EQ(*flight->Look(RequestOf(8, 8)), view);
+    std::unique_lock lock(mutex);
+    came.wait(lock, [&] { return views.size() > view; });
+  }
+  EXPECT_TRUE(flight->Land().ok()) << flight->Land();
+  EXPECT_EQ(views, (std::vector<uint64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST_F(ClientTest, ALiveFlightThatGetsNowhereEnds) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.chunks.pop_back();
+  service_.frames_before_failure = 1;
+  service_.frames_between_failures = 1;
+  const auto client = Connect({.retry = kQuick});
+  const auto flight = client->Steer("room", {}, [](const LiveFrame&) { FAIL(); });
+  EXPECT_TRUE(flight->Look(RequestOf(8, 8)).ok());
+  EXPECT_TRUE(absl::IsUnavailable(flight->Land())) << flight->Land();
+  EXPECT_EQ(service_.streams_begin_with,
+            std::vector<uint64_t>(static_cast<size_t>(kQuick.max_attempts), 0));
+}
+
+TEST_F(ClientTest, ALiveFlightWaitsForAFrameOnlySoLong) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.chunks.pop_back();  // so that no frame is ever complete
+  std::promise<void> release;
+  service_.hold = release.get_future().share();
+  const auto client = Connect({.call_timeout_ms = std::chrono::milliseconds(50)});
+  const auto flight = client->Steer("room", {}, [](const LiveFrame&) { FAIL(); });
+  EXPECT_TRUE(flight->Look(RequestOf(8, 8)).ok());
+  EXPECT_EQ(flight->Land().code(), absl::StatusCode::kDeadlineExceeded) << flight->Land();
+  release.set_value();
+}
+
+TEST_F(ClientTest, LiveFramesThatNobodyAskedForAreDataLoss) {
+  service_.chunks = ChunksOf(8, 8);
+  service_.sequence_error = 1;
+  const auto client = Connect();
+  const auto flight = client->Steer("room", {}, [](const LiveFrame&) { FAIL(); });
+  EXPECT_TRUE(flight->Look(RequestOf(8, 8)).ok());
+  EXPECT_TRUE(absl::IsDataLoss(flight->Land())) << flight->Land();
 }
 
 TEST_F(ClientTest, AServerThatComesBackIsFound) {
@@ -295,14 +354,14 @@ TEST_F(ClientTest, AServerThatComesBackIsFound) {
   std::thread call([&] { EXPECT_TRUE(client->DescribeScene("room").ok()); });
   Listen(address_);
   call.join();
-  EXPECT_TRUE(client->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) {}).ok());
+  EXPECT_TRUE(client->Fly("room", {RequestOf(8, 8)}, {}, [](size_t, const Frame&) {}).ok());
 }
 
 TEST_F(ClientTest, FramesOutOfOrderAreDataLoss) {
   service_.chunks = ChunksOf(8, 8);
   service_.sequence_error = 1;
   EXPECT_TRUE(absl::IsDataLoss(
-      Connect()->Fly("room", {RequestOf(8, 8)}, false, [](size_t, const Frame&) { FAIL(); })));
+      Connect()->Fly("room", {RequestOf(8, 8)}, {}, [](size_t, const Frame&) { FAIL(); })));
 }
 
 }  // namespace

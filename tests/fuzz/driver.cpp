@@ -3,10 +3,9 @@
 //   TARGET [-runs=N] [-seed=S] [-write_seeds=FOLDER] [FILE...]
 //
 // With files it runs on these and nothing else. An input that ends the process is left in
-// ./crash-input. LINETREE_FUZZ_LONG in the environment makes it a thousand times as many runs.
+// ./crash-input.
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -22,7 +21,6 @@ namespace linetree::fuzz {
 namespace {
 
 constexpr size_t kMaxInputBytes = 64 << 10;
-constexpr int kLongFactor = 1000;
 
 std::string input;
 
@@ -107,7 +105,7 @@ struct Flags {
 
 Flags Parse(int argc, char** argv) {
   Flags flags;
-  for (const std::string argument : std::vector<std::string>(argv + 1, argv + argc)) {
+  for (const std::string& argument : std::vector<std::string>(argv + 1, argv + argc)) {
     const std::string value = argument.substr(argument.find('=') + 1);
     if (argument.starts_with("-runs=")) {
       flags.runs = std::stoull(value);
@@ -119,7 +117,6 @@ Flags Parse(int argc, char** argv) {
       flags.files.push_back(argument);
     }
   }
-  if (std::getenv("LINETREE_FUZZ_LONG") != nullptr) flags.runs *= kLongFactor;
   return flags;
 }
 

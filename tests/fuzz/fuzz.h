@@ -1,5 +1,5 @@
 // What a fuzz target defines. By g++ it is linked with driver.cpp, which mutates the seeds; by
-// clang with libFuzzer (see CMakeLists.txt).
+// clang with libFuzzer, which libfuzzer.cpp gives them (see CMakeLists.txt).
 #pragma once
 
 #include <cstddef>

@@ -4,7 +4,10 @@
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "absl/status/statusor.h"
+#include "core/io/load_scene.h"
 
 namespace linetree {
 namespace {
@@ -23,7 +26,7 @@ v1::Scene TwoBalls() {
   return Read<v1::Scene>(R"(
     materials { name: "red" }
     lights { name: "lamp" point {} }
-    lights { name: "sun" directional {} }
+    lights { name: "sun" directional { direction { y: -1 } } }
     objects { name: "a" material: "red" sphere { radius: 1 } transform { translate { x: 1 } } }
     objects { name: "b" material: "red" sphere { radius: 2 } })");
 }
@@ -36,6 +39,12 @@ absl::StatusOr<v1::Scene> Edited(const std::string& edits) {
   return scene;
 }
 
+SceneVersion VersionOfMessage(const v1::Scene& message) {
+  const auto scene = BuildScene(*SceneFromMessage(message));
+  EXPECT_TRUE(scene.ok()) << scene.status();
+  return scene.ok() ? (*scene)->version : SceneVersion();
+}
+
 std::vector<std::string> ObjectNames(const v1::Scene& scene) {
   std::vector<std::string> names;
   for (const auto& object : scene.objects()) names.push_back(object.name());
@@ -46,9 +55,51 @@ TEST(SceneEditTest, MovesComeAfterTheTransformsThatAreThere) {
   const auto scene = Edited(R"(edits { move_object {
     object { name: "a" } transform { rotate { axis { z: 1 } angle_deg: 90 } } } })");
   ASSERT_TRUE(scene.ok()) << scene.status();
-  ASSERT_EQ(scene->objects(0).transform_size(), 2);
-  EXPECT_TRUE(scene->objects(0).transform(0).has_translate());
-  EXPECT_TRUE(scene->objects(0).transform(1).has_rotate());
+  v1::Scene unfolded = TwoBalls();
+  auto& turn = *unfolded.mutable_objects(0)->add_transform()->mutable_rotate();
+  turn.mutable_axis()->set_z(1);
+  turn.set_angle_deg(90);
+  EXPECT_EQ(VersionOfMessage(*scene), VersionOfMessage(unfolded));
+  EXPECT_NE(VersionOfMessage(*scene), VersionOfMessage(TwoBalls()));
+}
+
+// A scene that is moved again and again stays as large as it is, and means what all steps mean.
+TEST(SceneEditTest, ManyMovesAreOneStep) {
+  v1::Scene folded = TwoBalls(), unfolded = TwoBalls();
+  std::mt19937_64 random(20261123);
+  std::uniform_real_distribution<double> number(-2, 2);
+  for (int move = 0; move < 1000; ++move) {
+    v1::UpdateSceneRequest request;
+    v1::MoveObject& edit = *request.add_edits()->mutable_move_object();
+    edit.mutable_object()->set_name("a");
+    v1::TransformStep& step = *edit.add_transform();
+    if (move % 3 == 0) {
+      step.mutable_translate()->set_x(number(random));
+    } else if (move % 3 == 1) {
+      step.mutable_rotate()->mutable_axis()->set_y(1);
+      step.mutable_rotate()->mutable_axis()->set_z(number(random));
+      step.mutable_rotate()->set_angle_deg(90 * number(random));
+    } else {
+      for (const auto set : {&v1::Vec3::set_x, &v1::Vec3::set_y, &v1::Vec3::set_z}) {
+        (step.mutable_scale()->*set)(move % 2 == 0 ? 2 : 0.5);
+      }
+    }
+    ASSERT_TRUE(ApplyEdits(request.edits(), folded).ok());
+    *unfolded.mutable_objects(0)->add_transform() = step;
+    if (move % 100 == 0) {
+      EXPECT_EQ(VersionOfMessage(folded), VersionOfMessage(unfolded)) << move;
+    }
+  }
+  EXPECT_EQ(folded.objects(0).transform_size(), 1);
+  EXPECT_EQ(VersionOfMessage(folded), VersionOfMessage(unfolded));
+}
+
+TEST(SceneEditTest, StepsThatAreWrongAreLeftForTheirError) {
+  const auto scene = Edited(R"(edits { move_object {
+    object { name: "a" } transform { scale { x: 1 y: 0 z: 1 } } } })");
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  const auto built = BuildScene(*SceneFromMessage(*scene));
+  EXPECT_THAT(std::string(built.status().message()), HasSubstr("objects[0].transform[1].scale"));
 }
 
 TEST(SceneEditTest, ObjectsComeGoAndChange) {

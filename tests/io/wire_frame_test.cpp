@@ -73,7 +73,7 @@ absl::Status AddAll(FrameAssembler& assembler, const std::vector<v1::FrameChunk>
 TEST(WireFrameTest, AFrameLosesNothing) {
   for (const auto& [width, height] : {std::pair(1, 1), {64, 64}, {65, 64}, {100, 70}, {130, 1}}) {
     const Frame frame = CountedFrame(width, height);
-    FrameAssembler assembler(width, height, true);
+    FrameAssembler assembler(width, height, {.all_layers = true});
     ASSERT_TRUE(AddAll(assembler, Cut(frame, true)).ok());
     ASSERT_TRUE(assembler.complete());
     const Frame back = assembler.Take();
@@ -104,7 +104,7 @@ TEST(WireFrameTest, TilesComeInRowMajorOrderAndTheEndLast) {
 }
 
 TEST(WireFrameTest, TheShareDoneGrowsToOne) {
-  FrameAssembler assembler(128, 64, false);
+  FrameAssembler assembler(128, 64, {});
   const auto chunks = Cut(CountedFrame(128, 64), false);
   EXPECT_EQ(assembler.share_done(), 0);
   ASSERT_TRUE(assembler.Add(chunks[0]).ok());
@@ -115,7 +115,7 @@ TEST(WireFrameTest, TheShareDoneGrowsToOne) {
 
 TEST(WireFrameTest, WithoutAllLayersThereIsOnlyRadiance) {
   const Frame frame = CountedFrame(70, 3);
-  FrameAssembler assembler(70, 3, false);
+  FrameAssembler assembler(70, 3, {});
   ASSERT_TRUE(AddAll(assembler, Cut(frame, false)).ok());
   const Frame back = assembler.Take();
   EXPECT_EQ(back.radiance, frame.radiance);
@@ -194,6 +194,81 @@ TEST(WireFrameTest, FilesAreWhatTheyWouldBeOnDisk) {
   EXPECT_TRUE(absl::IsInvalidArgument(DecodeJpeg("no picture").status()));
 }
 
+TEST(WireFrameTest, EveryFormIsPutTogetherAgain) {
+  Frame frame = CountedFrame(100, 70);
+  for (float& value : frame.radiance) value = std::fmod(value, 2048.f);  // halves hold these
+  for (const FrameCodec codec : {FrameCodec::kFloat, FrameCodec::kHalf, FrameCodec::kExr,
+                                 FrameCodec::kPng, FrameCodec::kJpeg}) {
+    for (const bool all_layers : {false, true}) {
+      if (all_layers && !HoldsLayers(codec)) continue;
+      const FrameFormat format{all_layers, codec};
+      FrameAssembler assembler(100, 70, format);
+      ASSERT_TRUE(AddAll(assembler, Cut(frame, format)).ok());
+      EXPECT_EQ(assembler.share_done(), 1);
+      ASSERT_TRUE(assembler.complete());
+      const Frame back = assembler.Take();
+      EXPECT_EQ(back.scene_version, frame.scene_version);
+      EXPECT_EQ(back.file, IsFile(codec) ? FileOf(Cut(frame, format)) : "");
+      if (!HoldsLayers(codec)) {
+        EXPECT_TRUE(back.radiance.empty());
+        continue;
+      }
+      EXPECT_EQ(back.radiance, frame.radiance);
+      EXPECT_EQ(back.object, all_layers ? frame.object : std::vector<int32_t>());
+      EXPECT_EQ(back.verdict, all_layers ? frame.verdict : std::vector<Verdict>());
+      EXPECT_EQ(back.depth, all_layers ? frame.depth : std::vector<float>());
+    }
+  }
+}
+
+TEST(WireFrameTest, WhatAsksForAFormatIsReadBack) {
+  for (const FrameFormat& format :
+       {FrameFormat{}, FrameFormat{true, FrameCodec::kExr},
+        FrameFormat{false, FrameCodec::kJpeg, 7}, FrameFormat{true, FrameCodec::kHalf},
+        FrameFormat{false, FrameCodec::kPng}}) {
+    v1::RenderFrameRequest request;
+    FrameFormatToWire(format, &request);
+    const auto back = FrameFormatFromWire(request, "");
+    ASSERT_TRUE(back.ok()) << back.status();
+    EXPECT_EQ(back->all_layers, format.all_layers);
+    EXPECT_EQ(back->codec, format.codec);
+    EXPECT_EQ(back->jpeg_quality, format.jpeg_quality);
+  }
+}
+
+TEST(WireFrameTest, PartsThatDoNotFitAreDataLoss) {
+  const FrameFormat format{.codec = FrameCodec::kExr};
+  Frame noise = CountedFrame(400, 300);
+  std::mt19937 random(7);  // several parts, however they are compressed
+  for (float& value : noise.radiance) value = static_cast<float>(random() % 360'000);
+  const auto good = Cut(noise, format);
+  ASSERT_GT(good.size(), 3u);
+  const auto expect_refused = [&](auto damage) {
+    auto chunks = good;
+    damage(chunks);
+    FrameAssembler assembler(400, 300, format);
+    EXPECT_TRUE(absl::IsDataLoss(AddAll(assembler, chunks)));
+  };
+  using Parts = std::vector<v1::FrameChunk>;
+  expect_refused([](Parts& c) { c.erase(c.begin()); });
+  expect_refused([](Parts& c) { c.erase(c.begin() + 1); });
+  expect_refused([](Parts& c) { c.insert(c.begin(), c[0]); });
+  expect_refused([](Parts& c) { c.erase(c.begin(), c.end() - 1); });
+  expect_refused([](Parts& c) { c[1].mutable_file()->set_file_bytes(1); });
+  expect_refused([](Parts& c) { c[0].mutable_file()->set_file_bytes(~uint64_t{0}); });
+  expect_refused([](Parts& c) { c[0].mutable_file()->clear_data(); });
+  expect_refused([](Parts& c) { c[0].mutable_tile()->set_width(1); });
+  expect_refused([](Parts& c) { (*c[0].mutable_file()->mutable_data())[0] ^= 1; });
+  expect_refused([](Parts& c) { *c[1].mutable_file()->mutable_data() += "more"; });
+  expect_refused([](Parts& c) { c = Cut(CountedFrame(300, 400), {.codec = FrameCodec::kExr}); });
+  expect_refused([](Parts& c) { c = Cut(CountedFrame(400, 300), {true, FrameCodec::kExr}); });
+  // A file that ends early, and says so.
+  expect_refused([](Parts& c) {
+    c.erase(c.begin() + 1, c.end() - 1);
+    c[0].mutable_file()->set_file_bytes(c[0].file().data().size());
+  });
+}
+
 // What a sender may do to the chunks of a 100 x 70 frame that must not get through.
 struct Damage {
   const char* what;
@@ -205,7 +280,7 @@ class WireFrameDamage : public testing::TestWithParam<Damage> {};
 TEST_P(WireFrameDamage, IsDataLoss) {
   auto chunks = Cut(CountedFrame(100, 70), true);
   GetParam().apply(chunks);
-  FrameAssembler assembler(100, 70, true);
+  FrameAssembler assembler(100, 70, {.all_layers = true});
   EXPECT_TRUE(absl::IsDataLoss(AddAll(assembler, chunks)));
 }
 
@@ -222,6 +297,7 @@ const Damage kDamages[] = {
     {"too_little_radiance",
      [](Chunks& c) { c[0].mutable_tile()->mutable_radiance()->RemoveLast(); }},
     {"too_many_objects", [](Chunks& c) { c[0].mutable_tile()->add_object(1); }},
+    {"halves_too", [](Chunks& c) { c[0].mutable_tile()->set_radiance_half("ab"); }},
     {"no_sources", [](Chunks& c) { c[0].mutable_tile()->clear_source(); }},
     {"unknown_source", [](Chunks& c) { (*c[0].mutable_tile()->mutable_source())[5] = 5; }},
     {"unknown_verdict", [](Chunks& c) { (*c[0].mutable_tile()->mutable_verdict())[5] = '\xff'; }},

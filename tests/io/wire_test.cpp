@@ -140,7 +140,7 @@ TEST_F(FrameRequestTest, LosesNothing) {
   request.height = 44;
   request.options.max_relative_error = 0.75;
   request.sampling = {9, SamplePattern::kJittered, ~uint64_t{0}};
-  request_ = FrameRequestToWire("balls", request, "", true);
+  request_ = FrameRequestToWire("balls", request, "", {.all_layers = true});
   EXPECT_TRUE(request_.all_layers());
   const auto back = Read();
   ASSERT_TRUE(back.ok()) << back.status();

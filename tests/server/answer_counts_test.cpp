@@ -1,5 +1,7 @@
 #include "server/answer_counts.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
 #include "core/io/wire.h"
 #include "tests/server/running_server.h"
 
@@ -53,6 +55,36 @@ TEST(AnswerCountsTest, RunsAreCountedAsSinglePixelsAre) {
   EXPECT_EQ(three.sources, (std::array<uint64_t, kSourceCount>{0, 0, 3, 1, 0}));
   EXPECT_EQ(three.verdicts[static_cast<size_t>(Verdict::kGap)], 2u);
   EXPECT_EQ(whole.values().at(-1).sources[0], 3u);
+  AnswerCounts::Counts sum;
+  for (const auto& [index, counts] : whole.values()) sum += counts;
+  EXPECT_EQ(whole.sum(), sum);
+  EXPECT_EQ(single.sum(), sum);
+}
+
+// What metrics show without a look at cells and objects is what GetStats finds by looking.
+TEST(AnswerCountsTest, SumsThatAreKeptAreThoseOfALookAtAll) {
+  test::RunningServer running;
+  Backend& backend = running.server().backend();
+  FrameRequest request;
+  request.width = request.height = 64;
+  for (const auto judge : {JudgeKind::kCertified, JudgeKind::kPaper}) {
+    request.options.judge = judge;
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_TRUE(running.client().RenderFrame("ball", request, "front", {}, nullptr).ok());
+    }
+  }
+  const Reply looked = *backend.GetStats({});
+  Reply::SceneStats scene = looked.scenes(0);
+  ExpectSums(scene);
+  uint64_t cells = 0;
+  for (const auto& object : scene.objects()) cells += SumOf(object.cells());
+  EXPECT_GT(cells, 0u);
+  EXPECT_EQ(cells, scene.cells()) << "the sum that is kept, and the cells one by one";
+  scene.clear_objects();
+  const Reply kept = backend.GetSums();
+  EXPECT_EQ(kept.scenes(0).SerializeAsString().size(), scene.SerializeAsString().size());
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(kept.scenes(0), scene));
+  EXPECT_EQ(kept.memory_budget_bytes(), looked.memory_budget_bytes());
 }
 
 TEST(AnswerCountsTest, SumsAreExactOverFramesAndRays) {
@@ -65,7 +97,7 @@ TEST(AnswerCountsTest, SumsAreExactOverFramesAndRays) {
     for (const Mode mode : {Mode::kCached, Mode::kCached, Mode::kClassical}) {
       request.options.lanes = lanes;
       request.options.mode = mode;
-      ASSERT_TRUE(running.client().RenderFrame("ball", request, "front", false, nullptr).ok());
+      ASSERT_TRUE(running.client().RenderFrame("ball", request, "front", {}, nullptr).ok());
       answers += 60 * 40;
     }
   }

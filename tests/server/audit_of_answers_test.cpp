@@ -33,7 +33,7 @@ class AuditedServer {
     request.width = request.height = 32;
     request.options.mode = mode;
     request.options.judge = JudgeKind::kCertified;
-    const auto frame = running_.client().RenderFrame("ball", request, "front", false, nullptr);
+    const auto frame = running_.client().RenderFrame("ball", request, "front", {}, nullptr);
     EXPECT_TRUE(frame.ok()) << frame.status();
     return *frame;
   }
@@ -83,7 +83,7 @@ TEST(AuditOfAnswersTest, FlightsAreAuditedToo) {
   request.camera = test::BuiltBallScene()->cameras[0];
   request.width = request.height = 20;
   const auto status =
-      server.running().client().Fly("ball", {request, request}, false, [](size_t, const Frame&) {});
+      server.running().client().Fly("ball", {request, request}, {}, [](size_t, const Frame&) {});
   ASSERT_TRUE(status.ok()) << status;
   EXPECT_EQ(server.Stats().checked(), 800u);
 }

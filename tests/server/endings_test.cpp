@@ -90,7 +90,7 @@ TEST(EndingsTest, AReaderThatGoesAwayGivesItsMemoryBack) {
     FrameRequest whole;
     whole.width = whole.height = 1000;
     const auto frame = running.NewClient({.retry = {.max_attempts = 5}})
-                           ->RenderFrame("ball", whole, "front", false, nullptr);
+                           ->RenderFrame("ball", whole, "front", {}, nullptr);
     EXPECT_TRUE(frame.ok()) << frame.status();
   }
 }
@@ -104,9 +104,9 @@ TEST(EndingsTest, AReaderThatTakesNothingDoesNotKeepItsMemoryForEver) {
   FrameRequest whole;
   whole.width = whole.height = 1000;
   const auto expect_room = [&] {
-    auto frame = client->RenderFrame("ball", whole, "front", false, nullptr);
+    auto frame = client->RenderFrame("ball", whole, "front", {}, nullptr);
     while (absl::IsResourceExhausted(frame.status())) {
-      frame = client->RenderFrame("ball", whole, "front", false, nullptr);
+      frame = client->RenderFrame("ball", whole, "front", {}, nullptr);
     }
     EXPECT_TRUE(frame.ok()) << frame.status();
   };
@@ -170,7 +170,7 @@ TEST(EndingsTest, ScenesMayComeAndGoWhileFramesAreRendered) {
       FrameRequest request;
       request.width = request.height = 50;
       while (!stop) {
-        const auto frame = client->RenderFrame("ball", request, "front", false, nullptr);
+        const auto frame = client->RenderFrame("ball", request, "front", {}, nullptr);
         EXPECT_TRUE(frame.ok() || absl::IsNotFound(frame.status())) << frame.status();
       }
     });
@@ -217,7 +217,7 @@ TEST(EndingsTest, FlightsAreCountedAndGiveTheirPlaceBack) {
     FrameRequest request;
     request.camera.eye = {0, 3, 8};
     request.width = request.height = 8;
-    const auto status = client->Fly("ball", {request}, false, [](size_t, const Frame&) {});
+    const auto status = client->Fly("ball", {request}, {}, [](size_t, const Frame&) {});
     EXPECT_TRUE(status.ok()) << status;
   }
 }

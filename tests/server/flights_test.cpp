@@ -28,7 +28,7 @@ std::vector<v1::FlyReply> ReadFrame(FlyStream& stream) {
 }
 
 Frame Assembled(const std::vector<v1::FlyReply>& replies, int width, int height) {
-  FrameAssembler assembler(width, height, false);
+  FrameAssembler assembler(width, height, {});
   for (const auto& reply : replies) {
     EXPECT_TRUE(assembler.Add(reply.chunk()).ok());
   }

@@ -85,7 +85,7 @@ TEST_F(GateTest, TheClientsLibraryShowsItsToken) {
   FrameRequest request;
   request.camera.eye = {0, 3, 8};
   request.width = request.height = 8;
-  EXPECT_TRUE(viewer->Fly("ball", {request}, false, [](size_t, const Frame&) {}).ok());
+  EXPECT_TRUE(viewer->Fly("ball", {request}, {}, [](size_t, const Frame&) {}).ok());
   running_->ExpectServing();
 }
 

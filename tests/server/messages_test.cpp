@@ -73,6 +73,27 @@ TEST(MessagesTest, TooManyBytesAreRefusedByTheTypesName) {
   EXPECT_THAT(std::string(status.message()), testing::StartsWith("TraceRaysRequest:"));
 }
 
+TEST(MessagesTest, OneNumberIsReadWithoutTheRest) {
+  v1::TraceRaysRequest request = ThreeRays();
+  const auto priority_of = [](const grpc::ByteBuffer& bytes) {
+    return LastVarint(bytes, v1::TraceRaysRequest::kPriorityFieldNumber);
+  };
+  EXPECT_EQ(priority_of(Serialize(request)), 0u);
+  request.set_priority(v1::PRIORITY_BACKGROUND);
+  const std::string bytes = request.SerializeAsString();
+  for (size_t piece = 1; piece < bytes.size(); ++piece) {
+    EXPECT_EQ(priority_of(InPieces(bytes, piece)), 3u) << piece;
+  }
+  // The last one counts, as in parsing; the number in a field of another type is none.
+  request.set_priority(v1::PRIORITY_BATCH);
+  EXPECT_EQ(priority_of(InPieces(bytes + request.SerializeAsString(), 5)), 2u);
+  v1::TraceRaysRequest back;
+  ASSERT_TRUE(back.ParseFromString(bytes + request.SerializeAsString()));
+  EXPECT_EQ(back.priority(), v1::PRIORITY_BATCH);
+  EXPECT_EQ(priority_of(InPieces("\x22\x01\x02", 1)), 0u);
+  EXPECT_EQ(priority_of(InPieces("\x20", 1)), 0u);
+}
+
 TEST(MessagesTest, AnEmptyMessageIsOne) {
   v1::TraceRaysRequest back;
   EXPECT_TRUE(Parse(Serialize(back), 10, &back).ok());

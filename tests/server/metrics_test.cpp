@@ -45,7 +45,7 @@ TEST(MetricsTest, ScenesAreShownAsStatsHasThem) {
   (*scene->mutable_answers()->mutable_verdicts())["gap"] = 6;
   scene->mutable_audit()->set_checked(4);
   const std::string text = MetricsText(
-      CollectServer(stats, {.waiting_renders = 3, .open_flights = 2, .log_lines_lost = 8}));
+      CollectServer(stats, {.waiting_renders = {3, 4, 5}, .open_flights = 2, .log_lines_lost = 8}));
   const std::string name = "{scene=\"od\\\"d\\\\ly\\nnamed\"";
   for (const std::string& line : {
            "linetree_frames_total" + name + "} 7\n",
@@ -56,7 +56,9 @@ TEST(MetricsTest, ScenesAreShownAsStatsHasThem) {
            "linetree_audit_checked_total" + name + "} 4\n",
            std::string("linetree_memory_budget_bytes 1048576\n"),
            std::string("linetree_build_info{version=\"1.2\"} 1\n"),
-           std::string("linetree_queue_length{queue=\"renders\"} 3\n"),
+           std::string("linetree_queue_length{queue=\"renders\",class=\"interactive\"} 3\n"),
+           std::string("linetree_queue_length{queue=\"renders\",class=\"batch\"} 4\n"),
+           std::string("linetree_queue_length{queue=\"renders\",class=\"background\"} 5\n"),
            std::string("linetree_flights 2\n"),
            std::string("linetree_log_lines_lost_total 8\n"),
        }) {

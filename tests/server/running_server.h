@@ -77,7 +77,7 @@ class RunningServer {
   void ExpectServing() {
     FrameRequest request;
     request.width = request.height = 16;
-    const auto frame = client_->RenderFrame("ball", request, "front", false, nullptr);
+    const auto frame = client_->RenderFrame("ball", request, "front", {}, nullptr);
     EXPECT_TRUE(frame.ok()) << frame.status();
   }
 

@@ -128,8 +128,8 @@ TEST(ServiceTest, AFrameIsTheHostsFrame) {
   for (int warmth = 0; warmth < 2; ++warmth) {
     const FrameRequest request = RequestOf(camera, 100, 70);
     double share = 0;
-    const auto served =
-        running.client().RenderFrame("ball", request, "", true, [&](double done) { share = done; });
+    const auto served = running.client().RenderFrame("ball", request, "", {.all_layers = true},
+                                                     [&](double done) { share = done; });
     ASSERT_TRUE(served.ok()) << served.status();
     ExpectSameFrame(*served, *host.RenderFrame(request, pool));
     EXPECT_EQ(share, 1);
@@ -139,8 +139,7 @@ TEST(ServiceTest, AFrameIsTheHostsFrame) {
 
 TEST(ServiceTest, ANamedCameraIsTheScenes) {
   test::RunningServer running;
-  const auto frame =
-      running.client().RenderFrame("ball", RequestOf({}, 8, 8), "left", false, nullptr);
+  const auto frame = running.client().RenderFrame("ball", RequestOf({}, 8, 8), "left", {}, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
   EXPECT_EQ(frame->camera, test::BuiltBallScene()->cameras[1]);
   EXPECT_TRUE(frame->depth.empty());
@@ -173,8 +172,8 @@ TEST(ServiceTest, AFlightsFramesComeInOrderAndAreTheHosts) {
     requests.push_back(RequestOf(camera, 40 + i, 30));
   }
   size_t expected = 0;
-  const auto status =
-      running.client().Fly("ball", requests, true, [&](size_t index, const Frame& frame) {
+  const auto status = running.client().Fly(
+      "ball", requests, {.all_layers = true}, [&](size_t index, const Frame& frame) {
         EXPECT_EQ(index, expected++);
         ExpectSameFrame(frame, *host.RenderFrame(requests[index], pool));
       });
@@ -298,7 +297,7 @@ TEST(ServiceTest, ManyClientsAtOnceGetTheirOwnPictures) {
     clients.emplace_back([&running, request, reference = *reference] {
       const auto client = running.NewClient();
       for (int round = 0; round < 8; ++round) {
-        const auto frame = client->RenderFrame("ball", request, "", true, nullptr);
+        const auto frame = client->RenderFrame("ball", request, "", {.all_layers = true}, nullptr);
         ASSERT_TRUE(frame.ok()) << frame.status();
         EXPECT_EQ(frame->object, reference.object);
         if (request.options.mode == Mode::kClassical) {

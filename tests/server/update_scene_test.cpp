@@ -33,7 +33,7 @@ Frame Rendered(Client& client, const std::string& scene, Mode mode) {
   request.width = request.height = 200;
   request.options.mode = mode;
   request.options.max_relative_error = 0;
-  auto frame = client.RenderFrame(scene, request, "front", true, nullptr);
+  auto frame = client.RenderFrame(scene, request, "front", {.all_layers = true}, nullptr);
   EXPECT_TRUE(frame.ok()) << frame.status();
   return *std::move(frame);
 }
@@ -92,6 +92,33 @@ TEST(UpdateSceneTest, BadEditsChangeNothing) {
   expect_refused(request, absl::StatusCode::kNotFound, "scene:");
   EXPECT_EQ(running.client().DescribeScene("ball")->scene_version(),
             test::BuiltBallScene()->version);
+}
+
+TEST(UpdateSceneTest, MovesDoNotPileUp) {
+  test::RunningServer running;
+  const auto bytes = [&] {
+    return running.server().backend().scenes().Find("ball", "")->content->size();
+  };
+  v1::Scene all_steps = test::BallScene();
+  size_t after_one = 0;
+  for (int move = 0; move < 100; ++move) {
+    const std::string step = R"(rotate { axis { x: 1 y: 2 } angle_deg: 7.3 })";
+    ASSERT_TRUE(
+        Update(running, Request("edits { move_object { object { name: 'ball' } transform { " +
+                                step + " } transform { translate { x: 0.001 } } } }"))
+            .status.ok());
+    for (const std::string& text : {step, std::string("translate { x: 0.001 }")}) {
+      LT_CHECK(google::protobuf::TextFormat::ParseFromString(
+          text, all_steps.mutable_objects(0)->add_transform()));
+    }
+    if (move == 0) after_one = bytes();
+  }
+  EXPECT_EQ(bytes(), after_one);
+  const auto fresh = running.client().LoadScene("fresh", all_steps, false);
+  ASSERT_TRUE(fresh.ok()) << fresh.status();
+  EXPECT_EQ(running.client().DescribeScene("ball")->scene_version(), fresh->scene_version());
+  EXPECT_EQ(Rendered(running.client(), "ball", Mode::kCached).radiance,
+            Rendered(running.client(), "fresh", Mode::kClassical).radiance);
 }
 
 TEST(UpdateSceneTest, NoEditsKeepTheCache) {

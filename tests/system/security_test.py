@@ -2,6 +2,9 @@
 
 import os
 import pathlib
+import queue
+import signal
+import ssl
 import subprocess
 import tempfile
 import unittest
@@ -165,6 +168,72 @@ class Security(unittest.TestCase):
         run = self.linetree("stats", "--server", server.address, "--connect-timeout", "1")
         self.assertEqual(run.returncode, 1)
         self.assertIn(server.address, run.stderr)
+
+    def test_secrets_are_read_anew_while_streams_go_on(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        fresh = Certificates(folder)  # another root
+        tokens, cert, key = (folder / name for name in ["tokens", "live.pem", "live.key"])
+        tokens.write_text(f"viewer {VIEWER}\n")
+        cert.write_bytes(self.certificates.read("server.pem"))
+        key.write_bytes(self.certificates.read("server.key"))
+        scene = str(served.PROJECT / "tests" / "system" / "ball.textproto")
+        with served.Served("--tls-cert", str(cert), "--tls-key", str(key), "--token-file",
+                           str(tokens), "--http", "127.0.0.1:0", "--scene", f"ball={scene}",
+                           credentials=self.certificates.channel()) as server:
+            viewpoints = queue.SimpleQueue()
+            flight = server.stub.Fly(iter(viewpoints.get, None), timeout=PATIENCE_S,
+                                     metadata=bearer(VIEWER))
+
+            def expect_a_frame():
+                viewpoints.put(service_pb2.FlyRequest(frame=small_frame()))
+                self.assertTrue(any(reply.chunk.HasField("end") for reply in
+                                    iter(lambda: next(flight), None)))
+
+            def reload(*lines):
+                server.process.send_signal(signal.SIGHUP)
+                for words in lines:
+                    while words not in (line := server.process.stderr.readline()):
+                        self.assertTrue(line, f"no line '{words}'")
+
+            def answer(root, token):
+                with grpc.secure_channel(server.address, root.channel()) as channel:
+                    stub = served.service_pb2_grpc.RadianceCacheStub(channel)
+                    try:
+                        stub.ListScenes(service_pb2.ListScenesRequest(), timeout=PATIENCE_S,
+                                        metadata=bearer(token))
+                    except grpc.RpcError as error:
+                        return error.code()
+                    return grpc.StatusCode.OK
+
+            def shown_by_https():
+                host, port = server.http.rsplit(":", 1)
+                return ssl.get_server_certificate((host, int(port)))
+
+            expect_a_frame()
+            # What is bad, or half written, changes nothing.
+            key.write_bytes(fresh.read("server.key"))
+            tokens.write_text("viewer short\n")
+            reload(f"--tls-key: {key}: expected the key of {cert}; the old ones stay",
+                   "tokens:1: expected a token of")
+            expect_a_frame()
+            self.assertEqual(answer(self.certificates, VIEWER), grpc.StatusCode.OK)
+            self.assertEqual(shown_by_https(), cert.read_text())
+
+            cert.write_bytes(fresh.read("server.pem"))
+            tokens.write_text(f"viewer {ADMIN}\n")
+            reload("certificate and key are read anew", "tokens are read anew")
+            expect_a_frame()
+            self.assertEqual(shown_by_https(), fresh.read("server.pem").decode())
+            self.assertEqual(answer(fresh, ADMIN), grpc.StatusCode.OK)
+            self.assertEqual(answer(fresh, VIEWER), grpc.StatusCode.UNAUTHENTICATED)
+            self.assertEqual(answer(self.certificates, ADMIN), grpc.StatusCode.UNAVAILABLE)
+            # New calls over the connection that was there show a new token, too.
+            with refused(self, grpc.StatusCode.UNAUTHENTICATED, "authorization: "):
+                server.stub.ListScenes(service_pb2.ListScenesRequest(), timeout=PATIENCE_S,
+                                       metadata=bearer(VIEWER))
+            viewpoints.put(None)
+            self.assertEqual(list(flight), [])
+            self.assertEqual(server.stop(), 0)
 
     def test_clients_may_have_to_show_a_certificate(self):
         root = self.certificates.path("root.pem")

@@ -22,7 +22,8 @@ class ScriptedClient : public LocalClient {
   explicit ScriptedClient(Script script) : LocalClient(1, 1 << 20), script_(std::move(script)) {}
 
   absl::StatusOr<Frame> RenderFrame(const std::string&, const FrameRequest& request,
-                                    const std::string&, bool, const Progress&) override {
+                                    const std::string&, const FrameFormat&,
+                                    const Progress&) override {
     const absl::Status status = script_(calls_++);
     if (!status.ok()) return status;
     Frame frame;

@@ -28,25 +28,26 @@ class LocalClientTest : public ::testing::Test {
 };
 
 TEST_F(LocalClientTest, LayersComeWhenAskedFor) {
-  const auto plain = client_.RenderFrame("gap", request_, "", false, nullptr);
+  const auto plain = client_.RenderFrame("gap", request_, "", {}, nullptr);
   ASSERT_EQ(plain.status(), absl::OkStatus());
   EXPECT_EQ(plain->radiance.size(), 3u * 32 * 24);
   EXPECT_TRUE(plain->depth.empty());
-  EXPECT_EQ(client_.RenderFrame("gap", request_, "", true, nullptr)->depth.size(), 32u * 24);
+  EXPECT_EQ(client_.RenderFrame("gap", request_, "", {.all_layers = true}, nullptr)->depth.size(),
+            32u * 24);
 }
 
 TEST_F(LocalClientTest, CamerasByName) {
   const FrameRequest unnamed{{}, 8, 8, {}};
-  const auto frame = client_.RenderFrame("gap", unnamed, "front", false, nullptr);
+  const auto frame = client_.RenderFrame("gap", unnamed, "front", {}, nullptr);
   ASSERT_EQ(frame.status(), absl::OkStatus());
   EXPECT_EQ(frame->camera.name, "front");
-  EXPECT_EQ(client_.RenderFrame("gap", request_, "back", false, nullptr).status().code(),
+  EXPECT_EQ(client_.RenderFrame("gap", request_, "back", {}, nullptr).status().code(),
             absl::StatusCode::kNotFound);
 }
 
 TEST_F(LocalClientTest, FliesInOrder) {
   std::vector<size_t> order;
-  const absl::Status status = client_.Fly("gap", {request_, request_, request_}, false,
+  const absl::Status status = client_.Fly("gap", {request_, request_, request_}, {},
                                           [&](size_t i, Frame) { order.push_back(i); });
   EXPECT_EQ(status, absl::OkStatus());
   EXPECT_THAT(order, ::testing::ElementsAre(0, 1, 2));
@@ -63,12 +64,12 @@ TEST_F(LocalClientTest, ScenesAreKeptReplacedAndForgotten) {
   EXPECT_EQ(client_.ListScenes()->size(), 1u);
   EXPECT_EQ(client_.UnloadScene("gap"), absl::OkStatus());
   EXPECT_EQ(client_.UnloadScene("gap").code(), absl::StatusCode::kNotFound);
-  EXPECT_EQ(client_.RenderFrame("gap", request_, "", false, nullptr).status().code(),
+  EXPECT_EQ(client_.RenderFrame("gap", request_, "", {}, nullptr).status().code(),
             absl::StatusCode::kNotFound);
 }
 
 TEST_F(LocalClientTest, StatisticsCountWhatWasDone) {
-  ASSERT_TRUE(client_.RenderFrame("gap", request_, "", false, nullptr).ok());
+  ASSERT_TRUE(client_.RenderFrame("gap", request_, "", {}, nullptr).ok());
   const std::vector<Ray> rays(5, Ray{{0, 1, 5}, {0, 0, -1}});
   ASSERT_TRUE(client_.TraceRays("gap", rays, {}).ok());
   const auto stats = client_.GetStats("");

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/io/exr.h"
+#include "core/io/jpeg.h"
 #include "core/io/png.h"
+#include "core/io/read_file.h"
 #include "tests/io/frames.h"
 #include "tests/io/temp_dir.h"
 
@@ -25,6 +27,31 @@ TEST(Output, TheExtensionDecides) {
   ASSERT_EQ(WritePicture(frame, Layer::kObject, dir.File("a.exr")), absl::OkStatus());
   EXPECT_EQ(ReadPng(dir.File("a.PNG"))->rgb, PaintLayer(frame, Layer::kObject).rgb);
   EXPECT_EQ(ReadExr(dir.File("a.exr"))->radiance, frame.radiance);
+}
+
+TEST(Output, PicturesAreWrittenAsTheyCame) {
+  TempDir dir;
+  const Frame frame = MakeFrame(5, 4);
+  const auto bytes = [&](const std::string& name) {
+    return *ReadFileAtMost(dir.File(name), 1 << 20);
+  };
+  ASSERT_EQ(WritePicture(frame, Layer::kObject, dir.File("a.jpg")), absl::OkStatus());
+  EXPECT_EQ(DecodeJpeg(bytes("a.jpg"))->width, 5);
+  Frame picture;
+  picture.file = "what a server has sent";
+  ASSERT_EQ(WritePicture(picture, Layer::kBeauty, dir.File("b.png")), absl::OkStatus());
+  EXPECT_EQ(bytes("b.png"), picture.file);
+}
+
+TEST(Output, PicturesCannotBeMoreThanTheyAre) {
+  const FrameFormat png{.codec = FrameCodec::kPng}, jpeg{.codec = FrameCodec::kJpeg};
+  EXPECT_TRUE(CheckFormat({.pictures = {"a.exr", "a.png", "a.jpg"}}, {}).ok());
+  EXPECT_TRUE(CheckFormat({.pictures = {"a.png"}}, png).ok());
+  EXPECT_TRUE(CheckFormat({.pictures = {"a.jpg", "b.JPEG"}}, jpeg).ok());
+  EXPECT_FALSE(CheckFormat({.pictures = {"a.png", "a.exr"}}, png).ok());
+  EXPECT_FALSE(CheckFormat({.pictures = {"a.jpg"}}, png).ok());
+  EXPECT_FALSE(CheckFormat({.pictures = {"a.png"}}, jpeg).ok());
+  EXPECT_FALSE(CheckFormat({.pictures = {"a.png"}, .layer = Layer::kDepth}, png).ok());
 }
 
 TEST(Output, MissingFoldersAreNoticedBeforehand) {

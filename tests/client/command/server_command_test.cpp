@@ -77,6 +77,71 @@ TEST_F(ServerCommand, ScenesAreEdited) {
   EXPECT_THAT(run.err, HasSubstr("edits.textproto:1:"));
 }
 
+TEST_F(ServerCommand, FramesComeInTheFormThatIsAskedFor) {
+  const auto render = [&](const std::string& codec, const std::string& file) {
+    return Run({"render", "--scene", "gap", "--mode", "classical", "--width", "40", "--height",
+                "30", "-q", "--codec", codec, "--priority", "batch", "-o", dir_.File(file)});
+  };
+  for (const char* codec : {"float", "exr", "half"}) {
+    const Finished run = render(codec, std::string(codec) + ".exr");
+    ASSERT_EQ(run.exit_status, 0) << run.err;
+  }
+  const auto plain = ReadExr(dir_.File("float.exr"));
+  ASSERT_TRUE(plain.ok()) << plain.status();
+  EXPECT_EQ(ReadExr(dir_.File("exr.exr"))->radiance, plain->radiance);
+  EXPECT_EQ(ReadExr(dir_.File("exr.exr"))->verdict, plain->verdict);
+  const auto half = ReadExr(dir_.File("half.exr"));
+  EXPECT_NE(half->radiance, plain->radiance);
+  for (size_t i = 0; i < plain->radiance.size(); ++i) {
+    EXPECT_NEAR(half->radiance[i], plain->radiance[i], 0x1p-11 * plain->radiance[i] + 0x1p-25);
+  }
+  // The picture of the server is that which the client would have made.
+  ASSERT_EQ(render("float", "mine.png").exit_status, 0);
+  ASSERT_EQ(render("png", "theirs.png").exit_status, 0);
+  const auto bytes = [&](const std::string& file) {
+    std::ifstream in(dir_.File(file), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  };
+  EXPECT_EQ(bytes("mine.png"), bytes("theirs.png"));
+  ASSERT_EQ(render("jpeg", "theirs.jpg").exit_status, 0);
+  EXPECT_TRUE(bytes("theirs.jpg").starts_with("\xff\xd8\xff"));
+  for (const auto& [codec, file] :
+       {std::pair("png", "a.exr"), {"jpeg", "a.png"}, {"png", "a.jpg"}}) {
+    const Finished run = render(codec, file);
+    EXPECT_EQ(run.exit_status, 1);
+    EXPECT_THAT(run.err, HasSubstr("frames come as "));
+  }
+  EXPECT_EQ(Run({"render", "--scene", "gap", "--priority", "urgent"}).exit_status, 2);
+  EXPECT_EQ(RunLinetree({"render", "--local", "--scene", SourceFile("scenes/gap.textproto"),
+                         "--priority", "batch"})
+                .exit_status,
+            2);
+}
+
+TEST_F(ServerCommand, AFlightMayKeepTheNewestViewpointOnly) {
+  const std::string path = SourceFile("scenes/paths/face_walk.textproto");
+  // So many at once that most are overtaken.
+  Finished run = Run({"fly", "--scene", "gap", "--path", path, "--frames", "200", "--width", "120",
+                      "--height", "90", "--newest", "100000", "--codec", "jpeg", "-o",
+                      dir_.File("v_%03d.jpg"), "--stats", dir_.File("fly.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  const auto fly = nlohmann::json::parse(std::ifstream(dir_.File("fly.json")));
+  EXPECT_EQ(fly["viewpoints"], 200);
+  EXPECT_LT(fly["frames"].size(), 200u);
+  EXPECT_EQ(dir_.Names().size(), fly["frames"].size() + 1);
+  EXPECT_THAT(dir_.Names(), testing::Contains("v_200.jpg")) << "the newest one always comes";
+  EXPECT_THAT(run.out, HasSubstr("200 viewpoints, "));
+
+  run = Run({"load", "--scene", "gap", "--path", path, "--clients", "2", "--frames", "100",
+             "--stream", "--newest", "100000", "--codec", "jpeg", "--priority", "background", "-q",
+             "--stats", dir_.File("load.json")});
+  ASSERT_EQ(run.exit_status, 0) << run.err;
+  const auto load = nlohmann::json::parse(std::ifstream(dir_.File("load.json")));
+  EXPECT_EQ(load["frames"].get<int>() + load["overtaken"].get<int>(), 200);
+  EXPECT_GE(load["frames"], 2);
+  EXPECT_EQ(Run({"load", "--scene", "gap", "--path", path, "--newest", "9"}).exit_status, 2);
+}
+
 TEST_F(ServerCommand, AFileIsLoadedUnderItsName) {
   const std::string peak = SourceFile("scenes/peak.textproto");
   Finished run = Run({"render", "--scene", peak, "--width", "16", "--height", "16"});

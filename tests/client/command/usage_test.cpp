@@ -58,7 +58,7 @@ TEST(Usage, ValuesAreChecked) {
   ExpectUsageError(with("--layer", "alpha"), "--layer");
   ExpectUsageError(with("--frames", "0"), "--frames");
   ExpectUsageError(with("--eye", "1,2"), "expected three finite numbers x,y,z, found '1,2'");
-  ExpectUsageError(with("-o", "a.jpg"), "expected a name that ends with .exr or .png");
+  ExpectUsageError(with("-o", "a.gif"), "expected a name that ends with .exr or .png");
   ExpectUsageError(with("--server", "a:1"), "--local");
 }
 
