@@ -66,7 +66,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
         ++ahead_.used;
       }
       if (uses < thrift.least_uses || uses == 0) return;
-      if (node.payload && !node.payload->WantsSmaller()) return;
+      if (node.payload && !HasEnough(uses * weight, *node.payload)) return;
       if (uses * weight < least(node.payload.get())) return;
       works.push_back({&node, object, uses * weight});
     });
@@ -107,8 +107,8 @@ void SurfaceCache::AllowDivisions(std::vector<Work>& works, const Thrift& thrift
 
 bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights,
                                 const Thrift& thrift) const {
-  if (!work.may_divide || work.points < min_uses_) return false;
-  if (work.node->cell.depth >= kMaxSurfaceDepth || !lights.WantsSmaller()) return false;
+  if (!work.may_divide || work.node->cell.depth >= kMaxSurfaceDepth) return false;
+  if (!HasEnough(work.points, lights)) return false;
   return thrift.least_points == nullptr ||
          work.points >= 2 * (*thrift.least_points)(work.object, &lights);
 }
