@@ -41,6 +41,8 @@ TEST(MetricsTest, ScenesAreShownAsStatsHasThem) {
   scene->set_frames(7);
   scene->set_cells(12);
   scene->mutable_totals()->set_shadow_rays(99);
+  scene->mutable_totals()->set_cells_evicted(3);
+  scene->set_cells_evicted(4);
   (*scene->mutable_answers()->mutable_sources())["replayed"] = 5;
   (*scene->mutable_answers()->mutable_verdicts())["gap"] = 6;
   scene->mutable_audit()->set_checked(4);
@@ -53,6 +55,7 @@ TEST(MetricsTest, ScenesAreShownAsStatsHasThem) {
            "linetree_answers_total" + name + ",source=\"replayed\"} 5\n",
            "linetree_verdicts_total" + name + ",verdict=\"gap\"} 6\n",
            "linetree_cells" + name + ",tree=\"linetree\"} 12\n",
+           "linetree_cells_evicted_total" + name + "} 7\n",
            "linetree_audit_checked_total" + name + "} 4\n",
            std::string("linetree_memory_budget_bytes 1048576\n"),
            std::string("linetree_build_info{version=\"1.2\"} 1\n"),
