@@ -304,6 +304,8 @@ absl::StatusOr<v1::TuneCacheReply> Backend::TuneCache(const v1::TuneCacheRequest
 absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest& request,
                                                       const CancelToken& cancel,
                                                       FrameTimer& timer) {
+  const auto priority = PriorityFromWire(request.priority(), Priority::kBatch, "priority");
+  if (!priority.ok()) return priority.status();
   auto scene = scenes_.Find(request.scene(), "scene");
   if (!scene.ok()) return scene.status();
   auto options = RenderOptionsFromWire(request.options(), options_.defaults, "");

@@ -44,12 +44,17 @@ void AddServer(const v1::GetStatsReply& stats, const Load& load, Families& out) 
   out.Begin("linetree_memory_budget_bytes", MetricType::Gauge, "For the caches of all scenes.");
   out.Add(stats.memory_budget_bytes());
   out.Begin("linetree_queue_length", MetricType::Gauge, "Jobs that wait to be worked on.");
+  size_t renders = 0;
+  for (const size_t waiting : load.waiting_renders) renders += waiting;
+  out.Add(renders, {{"queue", "renders"}});
+  out.Add(load.waiting_loads, {{"queue", "loads"}});
+  out.Begin("linetree_waiting_renders", MetricType::Gauge,
+            "Of the queue of renders, by class of priority.");
   const char* const classes[] = {"interactive", "batch", "background"};
   static_assert(std::size(classes) == kPriorities);
   for (size_t i = 0; i < std::size(classes); ++i) {
-    out.Add(load.waiting_renders[i], {{"queue", "renders"}, {"class", classes[i]}});
+    out.Add(load.waiting_renders[i], {{"class", classes[i]}});
   }
-  out.Add(load.waiting_loads, {{"queue", "loads"}, {"class", "interactive"}});
   out.Begin("linetree_flights", MetricType::Gauge, "Flights that are open.");
   out.Add(load.open_flights);
   out.Begin("linetree_log_lines_lost_total", MetricType::Counter,

@@ -56,11 +56,12 @@ absl::StatusOr<uint64_t> CheckBatch(const grpc::ByteBuffer& bytes, const ServerL
   return rays;
 }
 
-// Read without the rest, which is parsed in its turn.
-absl::StatusOr<Priority> PriorityOfBatch(const grpc::ByteBuffer& bytes) {
+// Read without the rest, which is parsed, and refused for what it is, in its turn.
+Priority PriorityOfBatch(const grpc::ByteBuffer& bytes) {
   const uint64_t asked = LastVarint(bytes, v1::TraceRaysRequest::kPriorityFieldNumber);
   return PriorityFromWire(static_cast<v1::Priority>(static_cast<int32_t>(asked)), Priority::kBatch,
-                          "priority");
+                          "priority")
+      .value_or(Priority::kBatch);
 }
 
 absl::Status CheckMessages(const grpc::ByteBuffer& bytes, const google::protobuf::Message& type,
@@ -161,8 +162,6 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
   const CallInfo info = ReadCallInfo(context);
   const auto rays = CheckBatch(*request, backend_.limits());
   if (!rays.ok()) return Finish(context, info, rays.status());
-  const auto priority = PriorityOfBatch(*request);
-  if (!priority.ok()) return Finish(context, info, priority.status());
   const auto timer = std::make_shared<FrameTimer>();
   timer->Enter(FrameTimer::Stage::kQueue);
   const auto work = [this, request, timer, id = info.request_id](const CancelToken& cancel) {
@@ -176,7 +175,7 @@ grpc::ServerUnaryReactor* Service::TraceRays(Context* context, const Bytes* requ
                                           return answer;
                                         });
   };
-  const JobInfo job{.priority = *priority,
+  const JobInfo job{.priority = PriorityOfBatch(*request),
                     .session = info.session,
                     .work_rays = std::max<uint64_t>(*rays, 1),
                     .deadline = info.deadline};

@@ -59,9 +59,10 @@ TEST(MetricsTest, ScenesAreShownAsStatsHasThem) {
            "linetree_audit_checked_total" + name + "} 4\n",
            std::string("linetree_memory_budget_bytes 1048576\n"),
            std::string("linetree_build_info{version=\"1.2\"} 1\n"),
-           std::string("linetree_queue_length{queue=\"renders\",class=\"interactive\"} 3\n"),
-           std::string("linetree_queue_length{queue=\"renders\",class=\"batch\"} 4\n"),
-           std::string("linetree_queue_length{queue=\"renders\",class=\"background\"} 5\n"),
+           std::string("linetree_queue_length{queue=\"renders\"} 12\n"),
+           std::string("linetree_waiting_renders{class=\"interactive\"} 3\n"),
+           std::string("linetree_waiting_renders{class=\"batch\"} 4\n"),
+           std::string("linetree_waiting_renders{class=\"background\"} 5\n"),
            std::string("linetree_flights 2\n"),
            std::string("linetree_log_lines_lost_total 8\n"),
        }) {
