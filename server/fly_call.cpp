@@ -89,7 +89,7 @@ void FlyCall::SubmitNext() {
   backend_.look_ahead().Yield();
   const auto job = backend_.renders().Submit(
       {.priority = plan_.PriorityOfNext(),
-       .session = absl::StrCat("flight ", token_.session),
+       .session = info_.session,
        // What is more than may be asked for is refused in its turn.
        .work_rays = std::min(plan_.WorkOfNext(), backend_.limits().render.max_samples),
        .deadline = info_.deadline,

@@ -108,7 +108,8 @@ absl::StatusOr<std::vector<LoadPhase>> Measure(const LoadFlags& flags) {
   for (size_t c = 0; c < own->size(); ++c) clients[c] = (*own)[c].get();
   plan->scene = session->scene.name();
   ProgressBar bar(!flags.quiet && IsTerminal(), "load");
-  return RunLoad(*plan, clients, [&bar](double share) { bar.Show(share); });
+  return RunLoad(
+      *plan, clients, [&bar](double share) { bar.Show(share); }, session->client.get());
 }
 
 // The run to compare with, read before the new one begins.
@@ -293,7 +294,9 @@ void AddLoad(CLI::App& parent, Commands& commands) {
   app->footer(
       "Frames that the server refuses for want of room are counted and do not end the test; other "
       "errors do.\nlate: no client was free when a frame was to begin; not begun: nor before the "
-      "time was up.\n"
+      "time was up.\nlight calls: GetStats, 40 times a second meanwhile, counted from when each "
+      "was "
+      "to begin.\n"
       "Exit status: 0; 1 on errors; 2 for a wrong command line; 3 when an objective was missed.\n\n"
       "Examples:\n"
       "  linetree load --scene room --path scenes/paths/room_walk.textproto --clients 8\n"

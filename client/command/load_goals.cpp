@@ -37,6 +37,7 @@ const std::vector<LoadMetric>& LoadMetrics() {
       {"render_p99_ms", false, [](Figures f) { return f.render.p99; }},
       {"encode_p99_ms", false, [](Figures f) { return f.encode.p99; }},
       {"network_p99_ms", false, [](Figures f) { return f.network.p99; }},
+      {"light_p99_ms", false, [](Figures f) { return f.light.p99; }},
       {"hit_rate", true, [](Figures f) { return f.sources.HitRate(); }},
       {"refused", false, [](Figures f) { return Count(f.refused); }},
       {"late", false, [](Figures f) { return Count(f.late); }},

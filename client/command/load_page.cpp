@@ -22,9 +22,10 @@ Row PartRow(const char* name, const Quantiles& q) {
 const Row kPartTitles = {"ms", "p50", "p90", "p99", "max"};
 
 std::vector<Row> PartRows(const LoadFigures& figures) {
-  return {PartRow("latency", figures.latency), PartRow("wait", figures.wait),
-          PartRow("queue", figures.queue),     PartRow("render", figures.render),
-          PartRow("encode", figures.encode),   PartRow("network", figures.network)};
+  return {PartRow("latency", figures.latency),  PartRow("wait", figures.wait),
+          PartRow("queue", figures.queue),      PartRow("render", figures.render),
+          PartRow("encode", figures.encode),    PartRow("network", figures.network),
+          PartRow("light calls", figures.light)};
 }
 
 const Row kTimeTitles = {"seconds",  "frames",   "hit rate", "interpolated",

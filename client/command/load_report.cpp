@@ -128,6 +128,8 @@ LoadFigures SummarizeLoad(const LoadPhase& phase) {
   figures.render = QuantilesOf(PartsMs(phase, RenderMs));
   figures.encode = QuantilesOf(PartsMs(phase, EncodeMs));
   figures.network = QuantilesOf(PartsMs(phase, NetworkMs));
+  figures.light = QuantilesOf(phase.light_calls_ms);
+  figures.light_calls = phase.light_calls_ms.size();
   if (!phase.samples.empty()) figures.buckets = Buckets(phase.samples, figures.seconds);
   return figures;
 }
@@ -154,6 +156,8 @@ nlohmann::json LoadJson(const LoadFigures& figures) {
           {"render_ms", Json(figures.render)},
           {"encode_ms", Json(figures.encode)},
           {"network_ms", Json(figures.network)},
+          {"light_ms", Json(figures.light)},
+          {"light_calls", figures.light_calls},
           {"hit_rate", figures.sources.HitRate()},
           {"sources", Json(figures.sources)},
           {"wire_bytes", figures.wire_bytes},

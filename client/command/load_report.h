@@ -29,6 +29,7 @@ struct LoadSample {
 struct LoadPhase {
   std::string name{};
   std::vector<LoadSample> samples{};
+  std::vector<double> light_calls_ms{};  // how long GetStats took meanwhile
   uint64_t not_begun = 0;    // were to begin before the time was up, but no client was free
   uint64_t overtaken = 0;    // viewpoints that a newer one has left without a frame
   uint64_t cells_built = 0;  // of all trees of the scene, since the phase before
@@ -76,6 +77,8 @@ struct LoadFigures {
   // Over all frames that were answered, in ms. Latency runs from when the frame was to begin, and
   // is the sum of the other five for each frame, though not for their quantiles.
   Quantiles latency{}, wait{}, queue{}, render{}, encode{}, network{};
+  Quantiles light{};  // of calls that render nothing, in ms
+  uint64_t light_calls = 0;
   SourceCounts sources{};
   uint64_t wire_bytes = 0;
   uint64_t cells_built = 0;

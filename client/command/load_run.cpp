@@ -9,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include "client/command/light_calls.h"
 #include "client/library/status.h"
 #include "core/math/check.h"
 
@@ -240,7 +241,8 @@ PhasePlan MeasuredPhase(const LoadPlan& plan) {
 
 absl::StatusOr<std::vector<LoadPhase>> RunLoad(const LoadPlan& plan,
                                                const std::vector<Client*>& clients,
-                                               const std::function<void(double)>& progress) {
+                                               const std::function<void(double)>& progress,
+                                               Client* light) {
   LT_CHECK(!clients.empty() && clients.size() == plan.pieces.size());
   std::vector<std::pair<std::string, PhasePlan>> todo;
   if (plan.warm_up_frames > 0) {
@@ -252,8 +254,15 @@ absl::StatusOr<std::vector<LoadPhase>> RunLoad(const LoadPlan& plan,
   for (auto& [name, phase] : todo) {
     const auto before = CountCells(*clients.front(), plan.scene);
     if (!before.ok()) return before.status();
+    std::optional<LightCalls> meanwhile;
+    if (light != nullptr) meanwhile.emplace(*light, plan.scene);
     auto result = PhaseRun(plan, phase, clients, progress).Run();
     if (!result.ok()) return result.status();
+    if (meanwhile) {
+      auto latencies_ms = meanwhile->Finish();
+      if (!latencies_ms.ok()) return latencies_ms.status();
+      result->light_calls_ms = *std::move(latencies_ms);
+    }
     const auto after = CountCells(*clients.front(), plan.scene);
     if (!after.ok()) return after.status();
     result->name = name;

@@ -38,11 +38,13 @@ struct LoadPlan {
   std::optional<double> newest{};
 };
 
-// One client for each piece; they may be the same object. Phases "warm-up", if there is one, and
+// One client for each piece; they may be the same object. With `light`, which should be a client of
+// its own, light calls are timed meanwhile. Phases "warm-up", if there is one, and
 // "measured". Refusals for want of room are samples, and in a closed loop the client comes back
 // when the server has said; all other errors end the test.
 absl::StatusOr<std::vector<LoadPhase>> RunLoad(const LoadPlan& plan,
                                                const std::vector<Client*>& clients,
-                                               const std::function<void(double)>& progress);
+                                               const std::function<void(double)>& progress,
+                                               Client* light = nullptr);
 
 }  // namespace linetree

@@ -88,12 +88,11 @@ PathCache::Forest* PathCache::OpenForest(const PathLimits& limits) {
   if (const std::unique_ptr<Forest> oldest = place->Take()) {
     AwaitReaders();
     const TreeStore<PathTree>& store = oldest->store;
-    evicted_.cells += store.evicted().cells + store.cell_count();
-    evicted_.bytes += store.evicted().bytes + store.byte_size();
+    evicted_.Add({store.cell_count(), store.byte_size()});
   }
   const uint64_t all = memory_bytes_, used = UsedBytes();
-  auto forest =
-      std::make_unique<Forest>(tracer_.scene(), limits, all > used ? all - used : 0, costs_);
+  auto forest = std::make_unique<Forest>(tracer_.scene(), limits, all > used ? all - used : 0,
+                                         costs_, evicted_);
   forest->ledger.SetPolicy(policy_name_);
   LT_CHECK(place->PutFirst(forest));
   return place->get();

@@ -110,7 +110,7 @@ class PathCache {
   // As SurfaceCache's.
   void EndFrame(const FrameMark& mark);
   void SetPolicy(std::string_view name);
-  Evicted evicted() const;
+  Evicted evicted() const { return evicted_.now(); }
   uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
   void SetMemoryBytes(uint64_t memory_bytes);
@@ -169,6 +169,7 @@ class PathCache {
   std::atomic<uint64_t> memory_bytes_;
   std::atomic<uint64_t> ledger_bytes_{0};
   std::atomic<uint32_t> clock_{1};
+  EvictedCounter evicted_;  // of all forests, also those that are gone
   std::array<OwningSlot<Forest>, kMaxPathForests> forests_;
   BuildCosts costs_;
   AheadCounters ahead_;
@@ -178,7 +179,6 @@ class PathCache {
   // Guarded by ledger_mutex_, as are the forests' ledgers and which forests there are:
   std::string policy_name_;
   uint32_t frame_begin_ = 1, pinned_ = 1;  // as SurfaceCache's
-  Evicted evicted_;                        // from forests that are gone
 };
 
 }  // namespace linetree

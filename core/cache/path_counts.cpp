@@ -1,19 +1,7 @@
 // What a path cache holds.
-#include <mutex>
-
 #include "core/cache/path_forest.h"
 
 namespace linetree {
-
-Evicted PathCache::evicted() const {
-  const std::lock_guard lock(ledger_mutex_);
-  Evicted all = evicted_;
-  ForEachForest([&](const Forest& forest) {
-    all.cells += forest.store.evicted().cells;
-    all.bytes += forest.store.evicted().bytes;
-  });
-  return all;
-}
 
 uint64_t PathCache::ByteSize() const {
   const EpochGuard reading;

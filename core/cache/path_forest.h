@@ -9,8 +9,10 @@ namespace linetree {
 
 struct PathCache::Forest {
   Forest(const Scene& scene, const PathLimits& path_limits, uint64_t memory_bytes,
-         const BuildCosts& costs)
-      : limits(path_limits), store(scene, memory_bytes), ledger(LedgerKind(limits), costs) {}
+         const BuildCosts& costs, EvictedCounter& evicted)
+      : limits(path_limits),
+        store(scene, memory_bytes, evicted),
+        ledger(LedgerKind(limits), costs) {}
 
   // Tells blocks from those of other forests and caches.
   static uint64_t LedgerKind(const PathLimits& limits) {

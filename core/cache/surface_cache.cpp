@@ -29,7 +29,7 @@ SurfaceCache::SurfaceCache(const Tracer& tracer, uint64_t memory_bytes, double m
       summer_(tracer.scene()),
       min_uses_(min_uses),
       memory_bytes_(memory_bytes),
-      store_(tracer.scene(), memory_bytes),
+      store_(tracer.scene(), memory_bytes, evicted_),
       costs_(tracer.scene().objects.size()),
       ledger_(kLedgerKind, costs_) {
   NoteLedger();

@@ -107,7 +107,7 @@ class SurfaceCache {
   void EndFrame(const FrameMark& mark);
   // As BlockLedger::SetPolicy.
   void SetPolicy(std::string_view name);
-  Evicted evicted() const { return store_.evicted(); }
+  Evicted evicted() const { return evicted_.now(); }
   // Bytes beside the trees: of what eviction needs to know.
   uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
@@ -153,6 +153,7 @@ class SurfaceCache {
   std::atomic<uint64_t> memory_bytes_;
   std::atomic<uint64_t> ledger_bytes_{0};
   std::atomic<uint32_t> clock_{1};
+  EvictedCounter evicted_;
   TreeStore<SurfaceTree> store_;
   BuildCosts costs_;
   AheadCounters ahead_;

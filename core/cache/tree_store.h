@@ -38,6 +38,19 @@ struct Evicted {
   uint64_t bytes = 0;
 };
 
+// The same, counted while others read it: they wait for nobody.
+class EvictedCounter {
+ public:
+  void Add(const Evicted& more) {
+    cells_ += more.cells;
+    bytes_ += more.bytes;
+  }
+  Evicted now() const { return {cells_, bytes_}; }
+
+ private:
+  std::atomic<uint64_t> cells_{0}, bytes_{0};
+};
+
 template <class Tree>
 class TreeStore {
  public:
@@ -46,8 +59,12 @@ class TreeStore {
   using Counts = CellCounts<typename Tree::Traits>;
 
   // What the store holds for every object of the scene, trees or not, counts as well: where
-  // `memory_bytes` have no room for it, there are no trees.
-  TreeStore(const Scene& scene, uint64_t memory_bytes) : scene_(scene) { MakeIndex(memory_bytes); }
+  // `memory_bytes` have no room for it, there are no trees. What is taken back is added to
+  // `evicted`, which must outlive the store and may be several stores'.
+  TreeStore(const Scene& scene, uint64_t memory_bytes, EvictedCounter& evicted)
+      : scene_(scene), evicted_(evicted) {
+    MakeIndex(memory_bytes);
+  }
 
   // Null when the object has no tree.
   Tree* Get(size_t object) const {
@@ -172,8 +189,7 @@ class TreeStore {
     AwaitReaders();
     const uint64_t cells = removed.counts_.Cells();
     Subtract(cells, removed.counts_.bytes);
-    evicted_cells_ += cells;
-    evicted_bytes_ += removed.counts_.bytes;
+    evicted_.Add({cells, removed.counts_.bytes});
     removed = Removed();
   }
 
@@ -246,8 +262,6 @@ class TreeStore {
   }
 
   uint64_t byte_size() const { return byte_size_; }
-  // Since the store was made.
-  Evicted evicted() const { return {evicted_cells_, evicted_bytes_}; }
   uint64_t cell_count() const { return cells_; }
   uint64_t CountBytes() const {
     uint64_t bytes = IndexBytes();
@@ -359,10 +373,10 @@ class TreeStore {
   }
 
   const Scene& scene_;
+  EvictedCounter& evicted_;
   OwningSlot<Index> index_;  // empty where there is no room for it
   std::atomic<uint64_t> byte_size_{0};
   std::atomic<uint64_t> cells_{0};
-  std::atomic<uint64_t> evicted_cells_{0}, evicted_bytes_{0};
 };
 
 // A pass of eviction frees an eighth of the budget.

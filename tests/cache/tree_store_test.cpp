@@ -15,7 +15,7 @@ using Store = TreeStore<SurfaceTree>;
 
 class TreeStoreTest : public testing::Test {
  protected:
-  TreeStoreTest() : scene_(test::BallsOnFloor(3, 90)), store_(*scene_, kPlenty) {
+  TreeStoreTest() : scene_(test::BallsOnFloor(3, 90)), store_(*scene_, kPlenty, evicted_) {
     store_.Want(0);
     store_.PlantWanted(kPlenty, [](size_t) { return true; });
   }
@@ -36,6 +36,7 @@ class TreeStoreTest : public testing::Test {
   }
 
   const std::shared_ptr<const Scene> scene_;
+  EvictedCounter evicted_;
   Store store_;
 };
 
@@ -53,8 +54,8 @@ TEST_F(TreeStoreTest, CountsWhatComesAndGoes) {
   store_.Dispose(removed);
   ExpectExactCounts();
   EXPECT_EQ(store_.cell_count(), 1u);
-  EXPECT_EQ(store_.evicted().cells, 4u);
-  EXPECT_EQ(store_.evicted().bytes, before - store_.byte_size());
+  EXPECT_EQ(evicted_.now().cells, 4u);
+  EXPECT_EQ(evicted_.now().bytes, before - store_.byte_size());
 }
 
 TEST_F(TreeStoreTest, WhatSomebodyOwnsStays) {

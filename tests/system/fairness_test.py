@@ -1,6 +1,7 @@
 """Many clients, one server: who asks for much gets no more of it than who asks for little. What was
 done for whom is told by the server's counters, never by a clock."""
 
+import queue
 import threading
 import unittest
 
@@ -17,7 +18,7 @@ SLACK_FRAMES = 5
 class Session:
     """Keeps some frames in flight until it is stopped, each asked for when another has come."""
 
-    def __init__(self, server, name, in_flight, **fields):
+    def __init__(self, server, name, in_flight, flights=False, **fields):
         self.server = server
         self.metadata = [("x-session-id", name)]
         self.request = small_frame(codec=service_pb2.CODEC_JPEG, **fields)
@@ -26,16 +27,30 @@ class Session:
         self.frames = 0
         self.stopped = threading.Event()
         self.changed = threading.Condition()
-        self.threads = [threading.Thread(target=self._fly) for _ in range(in_flight)]
+        ask = self._fly if flights else self._ask
+        self.threads = [threading.Thread(target=ask) for _ in range(in_flight)]
 
-    def _fly(self):
+    def _ask(self):
         while not self.stopped.is_set():
             for _ in self.server.stub.RenderFrame(self.request, timeout=PATIENCE_S,
                                                   metadata=self.metadata):
                 pass
-            with self.changed:
-                self.frames += 1
-                self.changed.notify_all()
+            self._count()
+
+    def _fly(self):
+        viewpoints = queue.SimpleQueue()
+        request = service_pb2.FlyRequest(frame=self.request)
+        viewpoints.put(request)
+        for reply in self.server.stub.Fly(iter(viewpoints.get, None), timeout=PATIENCE_S,
+                                          metadata=self.metadata):
+            if reply.chunk.HasField("end"):
+                self._count()
+                viewpoints.put(None if self.stopped.is_set() else request)
+
+    def _count(self):
+        with self.changed:
+            self.frames += 1
+            self.changed.notify_all()
 
     def wait_for(self, frames):
         with self.changed:
@@ -84,6 +99,13 @@ class Fairness(unittest.TestCase):
                 of_greedy, of_modest = self.shares(greedy, modest, frames=30)
                 slack = SLACK_FRAMES * WIDTH * HEIGHT + greedy.pixels
                 self.assertLess(abs(of_greedy - of_modest), slack, (of_greedy, of_modest))
+
+    def test_many_flights_of_a_session_have_one_part(self):
+        greedy = Session(self.server, "greedy", 12, flights=True, width=WIDTH, height=HEIGHT)
+        modest = Session(self.server, "modest", 4, width=WIDTH, height=HEIGHT)
+        of_greedy, of_modest = self.shares(greedy, modest, frames=30)
+        self.assertLess(abs(of_greedy - of_modest), (SLACK_FRAMES + 1) * greedy.pixels,
+                        (of_greedy, of_modest))
 
     def test_a_lower_class_has_its_smaller_part(self):
         greedy = Session(self.server, "greedy", 24, width=WIDTH, height=HEIGHT,

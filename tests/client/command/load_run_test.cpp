@@ -160,6 +160,30 @@ TEST(LoadRun, AFlightGoesOnAfterARefusal) {
   EXPECT_EQ(figures.refused, 1u);
 }
 
+TEST(LoadRun, LightCallsAreTimedMeanwhile) {
+  ScriptedClient client(Ok), light(Ok);
+  const auto phases = RunLoad(SmallPlan(), {&client, &client}, nullptr, &light);
+  ASSERT_TRUE(phases.ok()) << phases.status();
+  const std::vector<double>& latencies_ms = phases->front().light_calls_ms;
+  EXPECT_FALSE(latencies_ms.empty());
+  for (const double ms : latencies_ms) EXPECT_GE(ms, 0);
+  EXPECT_EQ(SummarizeLoad(phases->front()).light_calls, latencies_ms.size());
+}
+
+TEST(LoadRun, AnErrorOfALightCallEndsIt) {
+  class Failing : public ScriptedClient {
+   public:
+    Failing() : ScriptedClient(Ok) {}
+    absl::StatusOr<v1::GetStatsReply> GetStats(const std::string&) override {
+      return absl::UnavailableError("gone");
+    }
+  };
+  ScriptedClient client(Ok);
+  Failing light;
+  EXPECT_EQ(RunLoad(SmallPlan(), {&client, &client}, nullptr, &light).status(),
+            absl::UnavailableError("gone"));
+}
+
 TEST(LoadRun, OtherErrorsEndIt) {
   ScriptedClient client(
       [](int call) { return call == 2 ? absl::NotFoundError("gone") : absl::OkStatus(); });
