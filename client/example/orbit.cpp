@@ -1,5 +1,5 @@
-// orbit SERVER SCENE FILE: loads a scene into a linetreed, flies once around it and prints how much
-// of every frame came from the cache.
+// orbit HOST:PORT NAME FILE: loads a scene into a linetreed, flies once around it and prints how
+// much of every frame came from the cache.
 #include <cmath>
 #include <cstdio>
 
@@ -8,29 +8,22 @@
 
 using namespace linetree;
 
-int main(int argc, char** argv) {
-  if (argc != 4) return std::fprintf(stderr, "usage: orbit HOST:PORT NAME FILE\n"), 2;
-  const auto report = [](const absl::Status& status) {
-    return std::fprintf(stderr, "orbit: %s\n", std::string(status.message()).c_str()), 1;
-  };
-  const auto file = ReadSceneFile(argv[3]);
-  if (!file.ok()) return report(file.status());
-  const auto client = Client::Connect(argv[1], {.retry = {.max_attempts = 10}});
-  if (!client.ok()) return report(client.status());
-  const auto scene = (*client)->LoadScene(argv[2], (*file)->message(), /*replace=*/true);
-  if (!scene.ok()) return report(scene.status());
-
+int main(int argc, char** argv) try {
+  if (argc != 4) throw std::runtime_error("usage: orbit HOST:PORT NAME FILE");
+  const auto client = Client::Connect(argv[1], {.retry = {.max_attempts = 10}}).value();
+  client->LoadScene(argv[2], ReadSceneFile(argv[3]).value()->message(), /*replace=*/true).value();
   std::vector<FrameRequest> views(8);
   for (size_t i = 0; i < views.size(); ++i) {
-    const double angle_rad = 2 * M_PI * static_cast<double>(i) / static_cast<double>(views.size());
+    const double angle_rad = 2 * M_PI * static_cast<double>(i) / 8;
     views[i].camera.eye = {8 * std::cos(angle_rad), 4, 8 * std::sin(angle_rad)};
     views[i].width = views[i].height = 64;
   }
-  const auto flown = (*client)->Fly(argv[2], views, /*format=*/{}, [](size_t i, Frame frame) {
-    const FrameStats& stats = frame.stats;
-    std::printf("frame %zu: %.0f %% from the cache\n", i,
-                100.0 * static_cast<double>(stats.interpolated + stats.replayed) /
-                    static_cast<double>(stats.pixels));
+  const absl::Status flown = client->Fly(argv[2], views, {}, [](size_t i, const Frame& frame) {
+    const auto hits = static_cast<double>(frame.stats.interpolated + frame.stats.replayed);
+    std::printf("frame %zu: %.0f %% from the cache\n", i, 100 * hits / (64 * 64));
   });
-  return flown.ok() ? 0 : report(flown);
+  if (!flown.ok()) throw absl::BadStatusOrAccess(flown);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "orbit: %s\n", error.what());
+  return 1;
 }
