@@ -69,7 +69,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
       }
       if (uses < thrift.least_uses || uses == 0) return;
       const CellLights* known = node.payload.get();
-      if (known != nullptr && !known->WantsSmaller()) return;
+      if (known != nullptr && !HasEnough(uses * weight, *known)) return;
       if (uses * weight < least(known)) return;
       OwnedNode<SurfaceNode> owned(node);
       if (owned) works.push_back({std::move(owned), object, uses * weight});
@@ -111,8 +111,8 @@ void SurfaceCache::AllowDivisions(std::vector<Work>& works, const Thrift& thrift
 
 bool SurfaceCache::ShouldDivide(const Work& work, const CellLights& lights,
                                 const Thrift& thrift) const {
-  if (!work.may_divide || work.points < min_uses_) return false;
-  if (work.node->cell.depth >= kMaxSurfaceDepth || !lights.WantsSmaller()) return false;
+  if (!work.may_divide || work.node->cell.depth >= kMaxSurfaceDepth) return false;
+  if (!HasEnough(work.points, lights)) return false;
   return thrift.least_points == nullptr ||
          work.points >= 2 * (*thrift.least_points)(work.object, &lights);
 }

@@ -123,6 +123,10 @@ class SurfaceCache {
  private:
   struct Work;
 
+  // Whether a cell with so many points is to be divided, as far as the cache's least number goes.
+  bool HasEnough(double points, const CellLights& lights) const {
+    return lights.WantsSmaller() && points >= min_uses_ * lights.Patience();
+  }
   // Whether smaller cells are worth their cost, with what is known of this one.
   bool ShouldDivide(const Work& work, const CellLights& lights, const Thrift& thrift) const;
   std::vector<Work> CollectUsed(double weight, const Thrift& thrift);

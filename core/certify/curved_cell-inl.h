@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/certify/curved_terms.h"
+#include "core/certify/fading_jet-inl.h"
 #include "core/certify/jet_shape.h"
 #include "core/jet/angle_functions-inl.h"
 #include "core/jet/jet_vector-inl.h"
@@ -39,7 +40,8 @@ class CurvedCell {
 
   CurvedTerm CosineTo(const Light& light) const {
     CurvedTerm term;
-    Jet facing;
+    Jet facing, strength;
+    const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
     if (light.kind == LightKind::kDirectional) {
       facing = Dot(normal_, light.to_light);
     } else {
@@ -47,19 +49,21 @@ class CurvedCell {
       const Jet square = LengthSquared(segment);
       if (!(square.lo() > kLeastShare * square.hi())) return term;
       facing = Jet(Dot(normal_, segment)) * Jet(InverseSquareRoot(square));
+      if (fades && !FadeOver(light, square, strength)) return term;
     }
     facing.AssumeWithin(-1, 1);
-    double corners[4];
-    facing.k.Store(corners);
-    for (size_t k = 0; k < 4; ++k) term.corners[k] = std::max(0.0, corners[k]);
     term.is_known = true;
     if (facing.hi() < -kSetting) return CurvedTerm{true, 0, 0, 0, {}};
-    term.least = std::max(0.0, facing.lo());
-    term.most = std::max(0.0, facing.hi());
-    const double range = facing.v.Width() + facing.slack;
-    // Where the light sets inside the cell the function has a kink: its range bounds the error.
     const bool smooth = facing.lo() > kSetting;
-    term.error = smooth ? std::min(facing.InterpolationError(), range) : range;
+    const Jet arriving = fades ? Jet(facing * strength) : facing;
+    double corners[4];
+    arriving.k.Store(corners);
+    for (size_t k = 0; k < 4; ++k) term.corners[k] = std::max(0.0, corners[k]);
+    term.least = std::max(0.0, arriving.lo());
+    term.most = std::max(0.0, arriving.hi());
+    const double range = arriving.v.Width() + arriving.slack;
+    // Where the light sets inside the cell the function has a kink: its range bounds the error.
+    term.error = smooth ? std::min(arriving.InterpolationError(), range) : range;
     return term;
   }
 

@@ -11,7 +11,7 @@
 
 namespace linetree {
 
-// max(0, n.l) over a cell.
+// max(0, n.l) over a cell, times what the distance leaves of the light.
 struct CurvedTerm {
   bool is_known = false;
   double error = 0;  // of bilinear interpolation between the corners

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/certify/curved_terms.h"
+#include "core/certify/fading.h"
 #include "core/certify/plane_nodes.h"
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
@@ -56,9 +57,7 @@ std::array<float, 3> ToNode(const Rgb& sum) {
 std::vector<size_t> DiffuseSummer::Summable(const CellLights& lights) const {
   std::vector<size_t> summable;
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
-    const Light& light = scene_.lights[i];
-    const bool fades = light.kind == LightKind::kPoint && light.fade_distance > 0;
-    if (lights.lights[i].knowledge == LightKnowledge::kOn && !fades) summable.push_back(i);
+    if (lights.lights[i].knowledge == LightKnowledge::kOn) summable.push_back(i);
   }
   return summable;
 }
@@ -126,6 +125,11 @@ class PlaneTerms {
     std::array<Rgb, kPlaneNodes> nodes;
     for (size_t k = 0; k < kPlaneNodes; ++k) {
       nodes[k] = Rgb{sums.r[k], sums.g[k], sums.b[k]} + everywhere_;
+      const Vec3d place{places_.x[k], places_.y[k], places_.z[k]};
+      for (const FadingLight& fading : fading_) {
+        const double distance = Length(fading.light->position - place);
+        nodes[k] += Scaled(fading.strength, FallOff(*fading.light, distance) / distance);
+      }
     }
     return nodes;
   }
@@ -151,13 +155,22 @@ class PlaneTerms {
     const double nearest = std::max(height, distance - radius_) * (1 - kLengthMargin);
     const double farthest = (distance + radius_) * (1 + kLengthMargin);
     const double noise = (kHeightRounding * (reach_ + SumOfSizes(light.position)) + slip_) / height;
-    const double error = stretch_ / (81 * PowerOf(nearest, 5)) + noise / nearest;
-    if (!(error * farthest <= kMaxTermSpread)) return Taken::kNo;
+    const bool fades = light.fade_distance > 0;
+    const FadingBound fading = BoundFading(light, nearest, farthest);
+    // Of the height, once, and of the distance; what both do together is less than what is allowed
+    // for the distance twice.
+    const double growth = fades ? 1 + fading.slope : 1;
+    const double error = stretch_ * fading.fourth / (24 * 81) + noise * growth * fading.most;
+    if (!(error <= kMaxTermSpread * fading.least)) return Taken::kNo;
     const Rgb strength = Scaled(light.irradiance, height);
     bounds.error += Scaled(strength, error);
-    bounds.least += Scaled(strength, 1 / farthest);
-    bounds.most += Scaled(strength, 1 / nearest);
-    points_.push_back({light.position, strength});
+    bounds.least += Scaled(strength, fading.least);
+    bounds.most += Scaled(strength, fading.most);
+    if (fades) {
+      fading_.push_back({&light, strength});
+    } else {
+      points_.push_back({light.position, strength});
+    }
     return Taken::kYes;
   }
 
@@ -169,6 +182,11 @@ class PlaneTerms {
   const double stretch_;
   NodePlaces places_;
   std::vector<NodeLight> points_;
+  struct FadingLight {
+    const Light* light;
+    Rgb strength;
+  };
+  std::vector<FadingLight> fading_;
   Rgb everywhere_;  // of directional lights
 };
 

@@ -6,7 +6,7 @@
 // so
 //   error <= sum_l E_l h_l (wu^4 + Lambda wv^4) / (81 dmin_l^5),
 // Lambda = 1.64 bounding the sum of the absolute weights of four equidistant nodes, which pass the
-// error along the one axis on to the other.
+// error along the one axis on to the other. For lamps that fade with distance: fading.h.
 //
 // Spheres and frustums: bilinear, with the bound of corner jets of dimension 2.
 #pragma once

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/certify/cell_paths.h"
+#include "core/certify/fading_jet-inl.h"
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
@@ -159,10 +160,7 @@ class LightTerms {
       if (shines) along = Jet(Dot(direction, segment)) * inverse;
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
-        const Jet ratio = square * (1 / (light.fade_distance * light.fade_distance));
-        // Beyond, the powers in the derivatives would overflow.
-        if (!(std::pow(ratio.hi(), light.fade_power / 2) < kMostFading)) return false;
-        strength = Inverse(Jet(Power(ratio, light.fade_power / 2) + 1.0)) * 2.0;
+        if (!FadeOver(light, square, strength)) return false;
       }
     }
     cosine.AssumeWithin(-1, 1);
@@ -221,7 +219,6 @@ class LightTerms {
     const double most = std::max(0.0, f.hi());
     return Rough(Pack<Jet::kCorners>::All(most / 2), 0, most, Above(most / 2));
   }
-  static constexpr double kMostFading = 1e30;
 
   // `opening` is l.v, the cosine between the light and the way back.
   static bool Highlight(const JetHit<D>& hit, Jet opening, const Jet& cosine, double exponent,

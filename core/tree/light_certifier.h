@@ -100,6 +100,10 @@ struct CellLights {
   bool IsDecided() const { return is_decided; }
   // Whether smaller cells would make answers cheaper.
   bool WantsSmaller() const { return unsummed >= kMinUnsummed || !IsDecided(); }
+  // Of such a cell: how many times as many points it takes before that is worth its price as where
+  // candidates have to be tested. Shadow functions answer at little cost, so what matters is how
+  // many lights a division could decide, against the price of four cells.
+  double Patience() const;
   // Sets `tasks`, when all else is final.
   void MakeTasks(const Scene& scene);
   // Whether what is said holds at a point of the piece.
@@ -108,6 +112,10 @@ struct CellLights {
       return SignedDistance(contact.plane, point) > contact.clearance;
     });
   }
+
+ private:
+  // Whether rays are tested against objects for this light, which is one of `lights`.
+  bool IsTested(const LightList& list) const;
 };
 
 // What arrives of one light at all points of a hull.

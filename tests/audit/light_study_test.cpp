@@ -121,5 +121,22 @@ TEST(LightStudy, CountsEveryLightOnce) {
   EXPECT_LE(with.answered, with.candidates);
 }
 
+// What shadow functions answer for is not worth as many cells.
+TEST(LightStudy, FunctionsSpareCells) {
+  uint64_t with_cells = 0, without_cells = 0;
+  WorkerPool pool(1);
+  for (uint64_t seed = 5; seed < 9; ++seed) {
+    const auto scene = MakeFamilyScene(SceneFamily::kWalls, seed);
+    const auto with = StudyLights(*scene, scene->cameras.at(0), 128, 25, true, pool);
+    const auto without = StudyLights(*scene, scene->cameras.at(0), 128, 25, false, pool);
+    with_cells += with.cells;
+    without_cells += without.cells;
+    // Curved receivers have none, and their cells stay.
+    EXPECT_LE(with.cells, without.cells) << seed;
+  }
+  EXPECT_LT(with_cells, 3 * without_cells / 4);
+  EXPECT_GT(with_cells, without_cells / 10) << "what is undecided is divided all the same";
+}
+
 }  // namespace
 }  // namespace linetree

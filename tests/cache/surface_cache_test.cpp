@@ -35,6 +35,20 @@ class SurfaceCacheTest : public testing::Test {
     return known;
   }
 
+  // Whether shadow functions answer for lights that planar cells leave undecided (LightCertifier);
+  // without them rays are tested against candidates everywhere.
+  static constexpr bool kFunctions = true, kTests = false;
+
+  // Cells of a cache of which 500 rays are asked four times, where each use stands for so many.
+  uint64_t CellsAt(double weight, bool uses_functions) {
+    SurfaceCache cache(tracer_, 10'000'000, kMinSurfaceUses, uses_functions);
+    for (int round = 0; round < 4; ++round) {
+      Use(cache, 2, 500);
+      cache.Refine(weight, kSerial);
+    }
+    return cache.CellCount();
+  }
+
   std::shared_ptr<const Scene> scene_;
   Tracer tracer_;
 };
@@ -49,21 +63,24 @@ TEST_F(SurfaceCacheTest, KnowsNothingUntilItIsRefined) {
 }
 
 TEST_F(SurfaceCacheTest, UndecidedCellsAreDividedWhereTheyAreUsedMuch) {
-  SurfaceCache few(tracer_, 10'000'000), many(tracer_, 10'000'000);
-  for (int round = 0; round < 4; ++round) {
-    Use(few, 2, 500);
-    few.Refine(0.01, kSerial);
-    Use(many, 2, 500);
-    many.Refine(100, kSerial);
-  }
-  EXPECT_GT(many.CellCount(), 10 * few.CellCount());
+  EXPECT_GT(CellsAt(100, kTests), 10 * CellsAt(0.01, kTests));
+  EXPECT_GT(CellsAt(1000, kFunctions), 10 * CellsAt(0.01, kFunctions));
+}
+
+// What shadow functions answer costs little: it takes several times as many points, no more.
+TEST_F(SurfaceCacheTest, WhatFunctionsAnswerIsDividedLater) {
+  EXPECT_EQ(CellsAt(0.01, kFunctions), CellsAt(0.01, kTests));
+  EXPECT_LT(3 * CellsAt(100, kFunctions), 2 * CellsAt(100, kTests));
+  EXPECT_GT(CellsAt(600, kFunctions), CellsAt(100, kTests));
 }
 
 // A reader whose uses stand for many points leaves those of others, which stand for themselves, as
 // they are.
 TEST_F(SurfaceCacheTest, EachUseCountsAsManyPointsAsItsReaderSays) {
-  SurfaceCache plain(tracer_, 10'000'000), weighted(tracer_, 10'000'000);
-  SurfaceCache mixed(tracer_, 10'000'000);
+  // Without functions one threshold is that of all cells.
+  SurfaceCache plain(tracer_, 10'000'000, kMinSurfaceUses, kTests);
+  SurfaceCache weighted(tracer_, 10'000'000, kMinSurfaceUses, kTests);
+  SurfaceCache mixed(tracer_, 10'000'000, kMinSurfaceUses, kTests);
   for (int round = 0; round < 4; ++round) {
     Use(plain, 2, 500);
     plain.Refine(100, kSerial);

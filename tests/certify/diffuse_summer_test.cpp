@@ -13,8 +13,8 @@
 namespace linetree {
 namespace {
 
-// One object under many lights, all of them on.
-Scene LitObject(test::ShapeKind kind, test::Random& random) {
+// One object under many lights, all of them on; `fades`: all of them lamps that fade.
+Scene LitObject(test::ShapeKind kind, test::Random& random, bool fades = false) {
   Scene scene;
   test::AddMaterial(scene, test::Matte({0.5, 0.6, 0.7}));
   test::AddObject(scene, test::RandomShape(kind, random, 1, random.InCube(3)), 0);
@@ -22,7 +22,11 @@ Scene LitObject(test::ShapeKind kind, test::Random& random) {
     scene.lights.push_back(test::PointLight(
         scene.objects[0].bounds.Center() + random.Direction() * random.Uniform(1.5, 9),
         test::RandomRgb(random, 1)));
+    if (!fades) continue;
+    scene.lights.back().fade_distance = random.LogUniform(0.1, 30);
+    scene.lights.back().fade_power = random.Below(2) == 0 ? 2 : random.Uniform(0.3, 8);
   }
+  if (fades) return scene;
   scene.lights.push_back(test::DirectionalLight(random.Direction(), {0.3, 0.2, 0.1}));
   return scene;
 }
@@ -42,7 +46,7 @@ Rgb ExactSum(const Scene& scene, const CellLights& cell, const Hit& hit) {
     const Light& light = scene.lights[i];
     const LightView<double> view = ViewOf(light, hit.point);
     const double cosine = Dot(hit.normal, view.to_light);
-    if (cosine > 0) sum += Scaled(light.irradiance, cosine);
+    if (cosine > 0) sum += Scaled(light.irradiance, cosine * view.fall_off);
   }
   return sum;
 }
@@ -101,6 +105,89 @@ TEST(DiffuseSummer, SumsAreWithinTheirBounds) {
   }
 }
 
+TEST(DiffuseSummer, SumsOfFadingLightsAreWithinTheirBounds) {
+  test::Random random(15);
+  for (const test::ShapeKind kind : test::kShapeKinds) {
+    Seen seen;
+    for (int scene = 0; scene < 12; ++scene) {
+      const Scene lit = LitObject(kind, random, true);
+      for (const int depth : {1, 2, 3, 5}) Check(lit, depth, random, seen);
+    }
+    std::printf("%d sums, %d points, largest error / bound %.4f\n", seen.sums, seen.points,
+                seen.largest);
+    if (!std::get_if<TriangleShape>(&LitObject(kind, random).objects[0].shape)) {
+      EXPECT_GT(seen.points, 300);
+      EXPECT_GT(seen.largest, 0.02) << "a bound that wide says nothing";
+    }
+  }
+}
+
+// A rectangle 1 by `side` under one lamp, and a place on it.
+struct LampCase {
+  std::array<double, 6> x;  // side, lamp's x, y and height, place u and v
+  double fade_distance = 0;
+
+  // The sum's error relative to its bound, where that is one of interpolation and not of rounding.
+  double ErrorOverBound() const {
+    Scene scene;
+    test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
+    const double side = std::abs(x[0]), height = std::abs(x[3]);
+    test::AddObject(scene, test::Polygon({{0, 0, 0}, {1, 0, 0}, {1, side, 0}, {0, side, 0}}), 0);
+    scene.lights.push_back(test::PointLight({x[1], x[2], height}));
+    scene.lights[0].fade_distance = fade_distance;
+    const SurfaceChart chart(scene.objects[0]);
+    CellLights lights = AllOn(scene);
+    DiffuseSummer(scene).AddSums(0, chart, 0, {}, lights);
+    const int above = chart.IsOtherSide({0, 0, 1}) ? 1 : 0;
+    const auto& sum = lights.sums[static_cast<size_t>(above)];
+    if (!sum || !(sum->spread > 1e-4)) return 0;
+    const auto plane = chart.PlanarCellOf(0, {});
+    const double u = std::clamp(x[4], 0.0, 1.0), v = std::clamp(x[5], 0.0, 1.0);
+    const Vec3d place = plane->corner + plane->eu * u + plane->ev * v;
+    const LightView<double> view = ViewOf(scene.lights[0], place);
+    const double exact = view.to_light.z * view.fall_off;
+    return std::abs(sum->At(u, v).r - exact) / (sum->spread * exact);
+  }
+};
+
+// The place where a bound is used up most, by climbing from random ones.
+double WorstLampCase(double fade_distance, test::Random& random) {
+  double worst = 0;
+  for (int start = 0; start < 20; ++start) {
+    LampCase best{{random.LogUniform(0.01, 2), random.Uniform(-6, 6), random.Uniform(-6, 6),
+                   random.LogUniform(0.05, 6), random.Unit(), random.Unit()},
+                  fade_distance};
+    double most = best.ErrorOverBound();
+    double step = 1;
+    for (int i = 0; i < 1000; ++i) {
+      LampCase next = best;
+      for (double& x : next.x) {
+        if (random.Below(2) == 0) x += step * random.Uniform(-1, 1) * (0.1 + std::abs(x));
+      }
+      const double error = next.ErrorOverBound();
+      step = std::clamp(error > most ? 1.5 * step : 0.97 * step, 1e-3, 1.0);
+      if (error <= most) continue;
+      most = error;
+      best = next;
+    }
+    worst = std::max(worst, most);
+  }
+  EXPECT_LE(worst, 1);
+  return worst;
+}
+
+// What interpolation adds to a bound cannot shrink to less than half before an answer breaks it. The
+// rest is what cells have to be given that are neither square to the light nor narrow: the nearest
+// distance for all of the cell (to the fifth power), and kLebesgue for the second axis.
+TEST(DiffuseSummer, BoundsOnPlanesAreUsedUp) {
+  test::Random random(21);
+  for (const double fade_distance : {0.0, 0.3, 3.0}) {
+    const double worst = WorstLampCase(fade_distance, random);
+    std::printf("fade distance %.1f: largest error / bound %.3f\n", fade_distance, worst);
+    EXPECT_GT(worst, 0.4);
+  }
+}
+
 // The sums of some cells of the object, all of whose lights are on.
 std::vector<DiffuseSum> SumsOf(const Scene& scene, DiffuseSummer::Lanes lanes) {
   const DiffuseSummer summer(scene, lanes);
@@ -120,7 +207,9 @@ std::vector<DiffuseSum> SumsOf(const Scene& scene, DiffuseSummer::Lanes lanes) {
 TEST(DiffuseSummer, SumsOnCurvesAreTheSameOnEveryTarget) {
   test::Random random(6);
   for (const test::ShapeKind kind : {test::ShapeKind::kSphere, test::ShapeKind::kFrustum}) {
-    const Scene scene = LitObject(kind, random);
+    Scene scene = LitObject(kind, random);
+    scene.lights[0].fade_distance = scene.lights[1].fade_distance = 3;
+    scene.lights[1].fade_power = 1.5;
     const auto scalar = SumsOf(scene, DiffuseSummer::Lanes::kScalar);
     EXPECT_GT(std::count_if(scalar.begin(), scalar.end(),
                             [](const DiffuseSum& sum) { return sum.spread >= 0; }),
@@ -185,9 +274,13 @@ TEST(DiffuseSummer, WhatItCannotBoundIsLeftAlone) {
   EXPECT_FALSE(summed()) << "a light in the plane itself";
   scene.lights.back() = test::PointLight({0, 0, 0.01});
   EXPECT_FALSE(summed()) << "a light so near that the bound is useless";
-  scene.lights.back() = test::PointLight({0, 0, 5});
+  scene.lights.back() = test::PointLight({0, 0, 9});
+  scene.lights.back().fade_distance = 30;
+  EXPECT_TRUE(summed());
+  scene.lights.back() = test::PointLight({0, 0, 2.5});
+  scene.lights.back().fade_power = 8;
   scene.lights.back().fade_distance = 1;
-  EXPECT_FALSE(summed()) << "fall-off has no bound yet";
+  EXPECT_FALSE(summed()) << "a fall-off so steep that the bound is useless";
 }
 
 }  // namespace
