@@ -24,8 +24,8 @@ constexpr size_t kTilesInRow = kBlockSide / 4;
 constexpr uint64_t kAllTiles = ~uint64_t{0};
 static_assert(kTilesOfBlock == 64);
 
-// What is promised is looked for where it is more than the one share of the frame's work; in few
-// blocks, where it is less than the other.
+// What is promised is looked for, in one of so many blocks, where it is more than the one share of
+// the frame's work; for cells that last, where it is less than the other.
 constexpr double kLeastPromise = 0.01, kLargePromise = 0.1;
 constexpr size_t kExploredBlocks = 4;
 // What pays for itself many times within the frame may cost this share of its work.
@@ -300,7 +300,7 @@ void Blocks::RenderCached() {
   if (plan_.HopesAny() && promised > kLeastPromise * work) {
     if (promised > kLargePromise * work) {
       const double most_work = std::min(promised / 4, kSureShare * work);
-      if (Explore(1, kSureHorizon, most_work, done) > 0) TrySquares(done);
+      if (Explore(kExploredBlocks, kSureHorizon, most_work, done) > 0) TrySquares(done);
     } else {
       purse -= Explore(kExploredBlocks, kLearningHorizon, purse, done);
     }

@@ -5,6 +5,7 @@
 #include "core/render/scene_host.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_frame.h"
+#include "tests/support/sanitizer_share.h"
 
 namespace linetree {
 namespace {
@@ -102,7 +103,7 @@ void ExpectClassical(SceneHost& host, Lanes lanes, WorkerPool& pool) {
 TEST(AdoptTest, EditedScenesAnswerAsIfTheyHadAlwaysBeenSo) {
   WorkerPool pool(2);
   Adopted all;
-  for (uint64_t seed = 1; seed <= 8; ++seed) {
+  for (uint64_t seed = 1; seed <= 8 / test::kSanitizerShare; ++seed) {
     test::Random random(seed);
     const Lanes lanes = seed % 2 == 0 ? Lanes::kSimd : Lanes::kScalar;
     auto host =
@@ -123,8 +124,8 @@ TEST(AdoptTest, EditedScenesAnswerAsIfTheyHadAlwaysBeenSo) {
       if (HasFatalFailure()) return;
     }
   }
-  EXPECT_GT(all.kept, 1000u);
-  EXPECT_GT(all.dropped, 1000u);
+  EXPECT_GT(all.kept, 1000u / test::kSanitizerShare);
+  EXPECT_GT(all.dropped, 1000u / test::kSanitizerShare);
 }
 
 // Balls in front of a mirror and on one, a third of them of glass: most of what is seen is seen by
@@ -154,7 +155,7 @@ std::shared_ptr<Scene> MirrorsAndBalls(test::Random& random) {
 TEST(AdoptTest, WhatIsKnownOfPathsIsKeptOrDroppedRightly) {
   WorkerPool pool(2);
   uint64_t kept = 0;
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
+  for (uint64_t seed = 1; seed <= (test::kSanitizerShare == 1 ? 6 : 2); ++seed) {
     test::Random random(seed);
     auto host = std::make_unique<SceneHost>(MirrorsAndBalls(random));
     for (int edit = 0; edit < 5; ++edit) {
@@ -179,7 +180,7 @@ TEST(AdoptTest, WhatIsKnownOfPathsIsKeptOrDroppedRightly) {
       if (HasFatalFailure()) return;
     }
   }
-  EXPECT_GT(kept, 1000u);
+  EXPECT_GT(kept, 1000u / test::kSanitizerShare);
 }
 
 TEST(AdoptTest, TheFormerHostGoesOnAnswering) {

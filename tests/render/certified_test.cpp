@@ -8,6 +8,7 @@
 #include "tests/support/demo_scenes.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_frame.h"
+#include "tests/support/sanitizer_share.h"
 
 namespace linetree {
 namespace {
@@ -147,7 +148,7 @@ std::shared_ptr<const Scene> MirrorsAndGlass(uint64_t seed) {
 TEST(CertifiedTest, InterpolatedFramesAreWithinEpsilon) {
   WorkerPool pool(2);
   uint64_t interpolated = 0, listed = 0;
-  for (uint64_t seed = 1; seed <= 8; ++seed) {
+  for (uint64_t seed = 1; seed <= 8 / test::kSanitizerShare; ++seed) {
     const auto scene = MirrorsAndGlass(seed);
     SceneHost host(scene);
     const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 256), pool);
@@ -167,8 +168,8 @@ TEST(CertifiedTest, InterpolatedFramesAreWithinEpsilon) {
       }
     }
   }
-  EXPECT_GT(interpolated, 2000u);
-  EXPECT_GT(listed, 20000u);
+  EXPECT_GT(interpolated, 2000u / test::kSanitizerShare);
+  EXPECT_GT(listed, 20000u / test::kSanitizerShare);
 }
 
 // What frames learn they learn for all: many at a time divide cells no further than one after the

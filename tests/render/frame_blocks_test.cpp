@@ -10,6 +10,7 @@
 #include "tests/support/demo_scenes.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_frame.h"
+#include "tests/support/sanitizer_share.h"
 
 namespace linetree {
 namespace {
@@ -42,7 +43,7 @@ std::shared_ptr<const Scene> RandomScene(uint64_t seed) {
 TEST(FrameBlocksTest, AtEpsilonZeroTheyAreClassicalByteByByte) {
   WorkerPool pool(2);
   uint64_t listed = 0, replayed = 0;
-  for (uint64_t seed = 0; seed < 40; ++seed) {
+  for (uint64_t seed = 0; seed < 40; seed += test::kSanitizerShare) {
     const auto scene = RandomScene(seed);
     SceneHost host(scene, AlwaysAsk());
     const Frame classical = test::RenderFrame(host, Request(*scene, Mode::kClassical, 0), pool);
@@ -58,15 +59,15 @@ TEST(FrameBlocksTest, AtEpsilonZeroTheyAreClassicalByteByByte) {
       replayed += cached.stats.replayed;
     }
   }
-  EXPECT_GT(listed, 100'000u);
-  EXPECT_GT(replayed, 30'000u);
+  EXPECT_GT(listed, 100'000u / test::kSanitizerShare);
+  EXPECT_GT(replayed, 30'000u / test::kSanitizerShare);
 }
 
 TEST(FrameBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
   WorkerPool pool(2);
   uint64_t interpolated = 0;
   double largest = 0;
-  for (uint64_t seed = 0; seed < 40; ++seed) {
+  for (uint64_t seed = 0; seed < 40; seed += test::kSanitizerShare) {
     auto lit = std::make_shared<Scene>(*RandomScene(seed));
     test::Random random(seed);
     for (int i = 0; i < 6; ++i) {
@@ -99,7 +100,7 @@ TEST(FrameBlocksTest, TheyAreWithinEpsilonOfTheScalarTracer) {
       EXPECT_EQ(cached.stats.interpolated, 0u) << "no room for sums";
     }
   }
-  EXPECT_GT(interpolated, 3'000u);
+  EXPECT_GT(interpolated, 3'000u / test::kSanitizerShare);
   EXPECT_GT(largest, 1e-4) << "sums were used";
 }
 
