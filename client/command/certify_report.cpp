@@ -45,6 +45,8 @@ std::string CellTable(const CertifyReport& report) {
                                       {"same paths", Align::kRight}, {"partly", Align::kRight}};
   for (const double epsilon : report.cell_options.epsilons) {
     columns.push_back({absl::StrFormat("at %.2f", epsilon), Align::kRight});
+    columns.push_back({"sampled", Align::kRight});
+    columns.push_back({"isotopic", Align::kRight});
     columns.push_back({"paper's", Align::kRight});
   }
   for (const char* title :
@@ -62,6 +64,8 @@ std::string CellTable(const CertifyReport& report) {
                                      Percent(Share(row.partly, row.cells))};
     for (size_t i = 0; i < row.certified.size(); ++i) {
       line.push_back(Percent(Share(row.certified[i], row.cells)));
+      line.push_back(Percent(Share(row.sampled[i], row.cells)));
+      line.push_back(Percent(Share(row.sampled_isotopic[i], row.cells)));
       line.push_back(Percent(Share(row.paper[i], row.cells)));
     }
     line.push_back(Grouped(row.queries));
@@ -163,6 +167,8 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                              {"isotopic_doubts", DoubtsJson(row.isotopic_doubts)},
                              {"epsilons", report.cell_options.epsilons},
                              {"certified", row.certified},
+                             {"sampled", row.sampled},
+                             {"sampled_isotopic", row.sampled_isotopic},
                              {"paper", row.paper},
                              {"rays", row.queries},
                              {"violations", row.violations},

@@ -40,6 +40,7 @@ class SceneStudy {
   SceneStudy(const CellStudyOptions& options, SparseFamily family, uint64_t seed)
       : options_(options),
         random_(MixBits(seed)),
+        samples_(MixBits(~seed)),
         scene_(MakeSparseScene(family, seed)),
         tracer_(*scene_),
         certifier_(tracer_),
@@ -53,6 +54,8 @@ class SceneStudy {
     row.edge = edge;
     row.certified.resize(options_.epsilons.size());
     row.paper.resize(options_.epsilons.size());
+    row.sampled.resize(options_.epsilons.size());
+    row.sampled_isotopic.resize(options_.epsilons.size());
     for (int i = 0; i < options_.cells_per_scene; ++i) {
       if (const auto cell = SomeCell(edge)) StudyCell(*cell, row);
     }
@@ -99,10 +102,10 @@ class SceneStudy {
   void StudyCell(const RandomCell& cell, CellStudyRow& row) {
     ++row.cells;
     const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
-    const double begin = NowUs();
+    const double begin = ThreadUs();
     const CellPaths paths =
         certifier_.Certify(cell.object, chart, cell.pair, cell.box, limits_, nullptr);
-    const double took = NowUs() - begin;
+    const double took = ThreadUs() - begin;
     const bool same = paths.verdict == Verdict::kCertified;
     const bool partly = !same && paths.ListsAnything();
     (same ? row.accepted_us : partly ? row.partly_us : row.refused_us) += took;
@@ -111,18 +114,22 @@ class SceneStudy {
     if (same) row.same_path_rays += paths.steps.size();
     if (partly) row.partly_rays += paths.steps.size();
     if (!same) ++row.doubts[static_cast<size_t>(paths.doubt)];
-    const double before_shades = NowUs();
+    const double before_shades = ThreadUs();
     const Corners corners = Shade(cell);
-    if (same) row.shades_us += NowUs() - before_shades;
-    if (LooksIsotopic(cell, corners)) {
+    if (same) row.shades_us += ThreadUs() - before_shades;
+    const bool isotopic = LooksIsotopic(cell, corners);
+    if (isotopic) {
       ++row.isotopic;
       if (!same) ++row.isotopic_doubts[static_cast<size_t>(paths.doubt)];
     }
     const Judgement paper = paper_.Decide(corners);
+    const double sampled = SampledError(cell, corners, paths);
     for (size_t i = 0; i < options_.epsilons.size(); ++i) {
       const double epsilon = options_.epsilons[i];
       row.certified[i] += same && paths.spread <= epsilon ? 1 : 0;
       row.paper[i] += paper.verdict == Verdict::kCertified && paper.spread <= epsilon ? 1 : 0;
+      row.sampled[i] += sampled <= epsilon ? 1 : 0;
+      row.sampled_isotopic[i] += isotopic && sampled <= epsilon ? 1 : 0;
     }
     for (int q = 0; q < options_.queries_per_cell; ++q) Query(cell, paths, row);
   }
@@ -141,9 +148,9 @@ class SceneStudy {
   }
 
   // Of a ray in the cell: sides and middles are as likely as the rest.
-  RayCoords SomeLocal() {
+  static RayCoords SomeLocal(RandomStream& random) {
     RayCoords local;
-    for (double& x : local) x = random_.OneIn(4) ? 0.5 * random_.Below(3) : random_.Unit();
+    for (double& x : local) x = random.OneIn(4) ? 0.5 * random.Below(3) : random.Unit();
     return local;
   }
   static RayCoords In(const CellBox& box, const RayCoords& local) {
@@ -163,7 +170,7 @@ class SceneStudy {
     const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
     RayCounts counts;
     for (int q = 0; q < options_.queries_per_cell; ++q) {
-      const RayCoords at = In(cell.box, SomeLocal());
+      const RayCoords at = In(cell.box, SomeLocal(random_));
       if (!is_like_first(
               TraceCorner(tracer_, cell.object, chart, cell.pair, at, limits_, counts))) {
         return false;
@@ -172,9 +179,53 @@ class SceneStudy {
     return true;
   }
 
+  // Relative, the largest of three channels, as the promise has it.
+  double ErrorOf(const Rgb& answer, const Rgb& classical) const {
+    double error = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double floor = std::max(classical[c], RadianceFloor(*scene_));
+      error = std::max(error, std::abs(answer[c] - classical[c]) / floor);
+    }
+    return error;
+  }
+
+  // The largest error in sampled rays of the better one of two interpolants: of the corners, and
+  // the certified one, which is moved to the middle of its errors. Infinity where some ray misses
+  // the object or both are beyond every epsilon.
+  double SampledError(const RandomCell& cell, const Corners& corners, const CellPaths& paths) {
+    if (!std::all_of(corners.begin(), corners.end(), [](const auto& c) { return c->hits; })) {
+      return Box3::kInf;
+    }
+    Interpolant between{};
+    for (size_t m = 0; m < kCellCorners; ++m) {
+      const Rgb radiance = corners[m]->tree.radiance;
+      for (int c = 0; c < 3; ++c) {
+        between.corner[m][static_cast<size_t>(c)] = static_cast<float>(radiance[c]);
+      }
+    }
+    const double most = options_.epsilons.empty() ? 0 : options_.epsilons.back();
+    double error = 0, certified = paths.interpolant ? 0 : Box3::kInf;
+    const ObjectChart& chart = charts_[static_cast<size_t>(cell.object)];
+    RayCounts counts;
+    for (int q = 0; q < options_.samples_per_cell; ++q) {
+      const RayCoords local = SomeLocal(samples_);
+      const Ray line = chart.LineOf(cell.pair, In(cell.box, local));
+      const Hit hit = tracer_.IntersectObjectLine(cell.object, line.origin, line.direction);
+      if (!hit.IsHit()) return Box3::kInf;
+      const Rgb classical =
+          tracer_.RadianceFromHit(hit, line.origin, line.direction, limits_, counts);
+      error = std::max(error, ErrorOf(Evaluate(between, local), classical));
+      if (paths.interpolant) {
+        certified = std::max(certified, ErrorOf(Evaluate(*paths.interpolant, local), classical));
+      }
+      if (std::min(error, certified) > most) return Box3::kInf;
+    }
+    return std::min(error, certified);
+  }
+
   void Query(const RandomCell& cell, const CellPaths& paths, CellStudyRow& row) {
     if (paths.steps.empty()) return;
-    const RayCoords local = SomeLocal();
+    const RayCoords local = SomeLocal(random_);
     const RayCoords at = In(cell.box, local);
     const Ray line = charts_[static_cast<size_t>(cell.object)].LineOf(cell.pair, at);
     const Hit hit = tracer_.IntersectObjectLine(cell.object, line.origin, line.direction);
@@ -188,18 +239,14 @@ class SceneStudy {
     if (!(replayed == classical)) ++row.replay_differences;
     if (paths.verdict != Verdict::kCertified) return;
     ++row.queries;
-    const Rgb answer = Evaluate(*paths.interpolant, local);
-    double error = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double floor = std::max(classical[c], RadianceFloor(*scene_));
-      error = std::max(error, std::abs(answer[c] - classical[c]) / floor);
-    }
+    const double error = ErrorOf(Evaluate(*paths.interpolant, local), classical);
     if (error > paths.spread) ++row.violations;
     if (paths.spread > 0) row.largest_error = std::max(row.largest_error, error / paths.spread);
   }
 
   const CellStudyOptions& options_;
   RandomStream random_;
+  RandomStream samples_;  // of its own: what is sampled changes nothing else
   const std::shared_ptr<const Scene> scene_;
   const Tracer tracer_;
   const PathCertifier certifier_;
@@ -215,6 +262,8 @@ void Add(const CellStudyRow& from, CellStudyRow& to) {
   for (size_t i = 0; i < from.certified.size(); ++i) {
     to.certified[i] += from.certified[i];
     to.paper[i] += from.paper[i];
+    to.sampled[i] += from.sampled[i];
+    to.sampled_isotopic[i] += from.sampled_isotopic[i];
   }
   for (size_t i = 0; i < from.doubts.size(); ++i) {
     to.doubts[i] += from.doubts[i];

@@ -18,6 +18,7 @@ struct CellStudyOptions {
   int scenes = 100;  // of each family
   int cells_per_scene = 60;
   int queries_per_cell = 40;
+  int samples_per_cell = 256;
   // Edges of cells as parts of the faces of the object's bounding box.
   std::vector<double> edges = {0.25, 0.125, 0.0625, 0.03125, 0.015625};
   std::vector<double> epsilons = {0.02, 0.1, 0.25};
@@ -32,6 +33,9 @@ struct CellStudyRow {
   uint64_t partly = 0;                     // others that save some search all the same
   uint64_t same_paths = 0;                 // all rays certainly meet the same surfaces and lights
   std::vector<uint64_t> certified, paper;  // accepted, by epsilon
+  // Cells in whose sampled rays an interpolant keeps within epsilon: what a proof could accept at
+  // most, whatever it knew; and how many of them look isotopic.
+  std::vector<uint64_t> sampled, sampled_isotopic;
   // The others, by the first reason why not all rays certainly take the same path.
   std::array<uint64_t, kDoubtCount> doubts{};
   // Cells whose corners and `queries_per_cell` more rays have isomorphic ray trees: what a judge
@@ -44,8 +48,8 @@ struct CellStudyRow {
   double largest_error = 0;         // relative to the bound
   // Rays of a path that were followed, the first one included, in the cells of both kinds.
   uint64_t same_path_rays = 0, partly_rays = 0;
-  // Microseconds for a cell: certified ones, those that are partly known, those of which nothing
-  // is, and sixteen classical shades of the certified ones' corners.
+  // Microseconds of processor time for a cell: certified ones, those that are partly known, those
+  // of which nothing is, and sixteen classical shades of the certified ones' corners.
   double accepted_us = 0, partly_us = 0, refused_us = 0, shades_us = 0;
 };
 

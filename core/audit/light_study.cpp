@@ -101,9 +101,9 @@ LightStudyRow StudyLights(const Scene& scene, const Camera& camera, int side, do
         if (hit.IsHit()) reader.Find(hit);
       }
     }
-    const double begin = NowUs();
+    const double begin = ThreadUs();
     row.cells += cache.Refine(1, kInTurn);
-    spent_us += NowUs() - begin;
+    spent_us += ThreadUs() - begin;
   }
   row.cell_us = spent_us / std::max<double>(1, static_cast<double>(row.cells));
   row.bytes = cache.ByteSize();

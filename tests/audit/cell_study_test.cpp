@@ -45,6 +45,13 @@ TEST_P(CellStudyTest, EveryCellIsAcceptedOrHasAReason) {
       EXPECT_LE(row.paper[i - 1], row.paper[i]);
     }
     EXPECT_LE(row.certified.back(), row.same_paths);
+    // Where the bound holds, samples are within it; most of what they show is certified.
+    for (size_t i = 0; i < row.certified.size(); ++i) {
+      EXPECT_GE(row.sampled[i], row.certified[i]);
+      EXPECT_GE(row.sampled[i], row.sampled_isotopic[i]);
+      EXPECT_GE(row.isotopic, row.sampled_isotopic[i]);
+      EXPECT_LT(row.sampled[i], 2 * row.certified[i]);
+    }
   }
   const auto share = [](const CellStudyRow& row) {
     return static_cast<double>(row.certified[0]) / static_cast<double>(row.cells);

@@ -176,9 +176,9 @@ double WorstLampCase(double fade_distance, test::Random& random) {
   return worst;
 }
 
-// What interpolation adds to a bound cannot shrink to less than half before an answer breaks it. The
-// rest is what cells have to be given that are neither square to the light nor narrow: the nearest
-// distance for all of the cell (to the fifth power), and kLebesgue for the second axis.
+// What interpolation adds to a bound cannot shrink to less than half before an answer breaks it.
+// The rest is what cells have to be given that are neither square to the light nor narrow: the
+// nearest distance for all of the cell (to the fifth power), and kLebesgue for the second axis.
 TEST(DiffuseSummer, BoundsOnPlanesAreUsedUp) {
   test::Random random(21);
   for (const double fade_distance : {0.0, 0.3, 3.0}) {
