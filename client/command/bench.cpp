@@ -8,6 +8,7 @@ void AddBench(CLI::App& parent, Commands& commands) {
   app->require_subcommand(1);
   AddBenchAccuracy(*app, commands);
   AddBenchAudit(*app, commands);
+  AddBenchBudget(*app, commands);
   AddBenchCertify(*app, commands);
   AddBenchEdit(*app, commands);
   AddBenchError(*app, commands);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "absl/strings/str_cat.h"
@@ -11,7 +10,7 @@
 #include "client/command/flags.h"
 #include "client/command/output.h"
 #include "client/command/policy_contest.h"
-#include "client/command/policy_corpus.h"
+#include "client/command/policy_flags.h"
 #include "client/command/progress_bar.h"
 #include "client/command/table.h"
 #include "core/io/atomic_file.h"
@@ -24,7 +23,6 @@ struct BenchPoliciesFlags {
   PolicyCorpus corpus{.scenes = {"scenes/room.textproto", "scenes/spd/balls_3.nff",
                                  "scenes/spd/tree_8.nff", "scenes/many_lights.textproto"},
                       .patterns = AllFlightPatterns()};
-  SizeFlags size{192, 192};
   std::string traces;  // folder
   std::string json, svg;
   bool quiet = false;
@@ -95,15 +93,13 @@ absl::StatusOr<int> BenchPolicies(const BenchPoliciesFlags& flags) {
   std::vector<PolicyRow> rows;
   {
     ProgressBar bar(!flags.quiet && IsTerminal(), "bench policies");
-    PolicyCorpus corpus = flags.corpus;
-    corpus.width = flags.size.width;
-    corpus.height = flags.size.height;
-    const auto traces = RecordCorpus(corpus, [&](double share) { bar.Show(0.8 * share); });
+    const auto traces = RecordCorpus(flags.corpus, [&](double share) { bar.Show(0.8 * share); });
     if (!traces.ok()) return traces.status();
     if (!flags.traces.empty()) {
       if (auto s = SaveTraces(*traces, flags.traces); !s.ok()) return s;
     }
-    const auto policies = ParsePolicies("all");
+    auto policies = ParsePolicies("all");
+    policies->insert(policies->end(), kToldPolicies.begin(), kToldPolicies.end());
     const std::vector<PolicyBudget> budgets = {*ParseBudget("25%"), *ParseBudget("50%"),
                                                *ParseBudget("75%")};
     double done = 0;
@@ -126,40 +122,8 @@ absl::StatusOr<int> BenchPolicies(const BenchPoliciesFlags& flags) {
   return kExitOk;
 }
 
-void AddPatterns(CLI::App& app, BenchPoliciesFlags& flags) {
-  std::map<std::string, FlightPattern> names;
-  for (size_t i = 0; i < kFlightPatternNames.size(); ++i) {
-    const auto pattern = static_cast<FlightPattern>(i);
-    names.emplace(kFlightPatternNames[i], pattern);
-  }
-  app.add_option("--flight", flags.corpus.patterns,
-                 "What clients do; may be given again; all by default")
-      ->type_name("PATTERN")
-      ->transform(CLI::CheckedTransformer(names, CLI::ignore_case))
-      ->default_str("");
-}
-
 void AddPoliciesFlags(CLI::App& app, BenchPoliciesFlags& flags) {
-  app.add_option("--scene", flags.corpus.scenes, "Scene file; may be given again")
-      ->type_name("FILE")
-      ->capture_default_str();
-  AddPatterns(app, flags);
-  app.add_option("--frames", flags.corpus.frames, "Of each flight, all clients together")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100'000))
-      ->capture_default_str();
-  AddSizeFlags(app, flags.size);
-  app.add_option("--epsilon", flags.corpus.epsilon, "What cached answers promise")
-      ->type_name("E")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("--seed", flags.corpus.seed, "Of where flights lead")
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_option("--threads", flags.corpus.threads, "0: all hardware threads")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  AddCorpusFlags(app, flags.corpus);
   app.add_option("--traces", flags.traces, "Also write the traces into this folder")
       ->type_name("FOLDER");
   app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");

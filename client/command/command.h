@@ -46,6 +46,7 @@ void AddCacheSim(CLI::App& cache, Commands& commands);
 void AddBench(CLI::App& parent, Commands& commands);
 void AddBenchAccuracy(CLI::App& bench, Commands& commands);
 void AddBenchAudit(CLI::App& bench, Commands& commands);
+void AddBenchBudget(CLI::App& bench, Commands& commands);
 void AddBenchCertify(CLI::App& bench, Commands& commands);
 void AddBenchEdit(CLI::App& bench, Commands& commands);
 void AddBenchError(CLI::App& bench, Commands& commands);

@@ -19,7 +19,7 @@ std::vector<PolicyContest> ContestsOf(const std::vector<PolicyRow>& rows) {
     contest.budget = row.budget;
     if (row.policy == kOurs) contest.ours = row.Regret();
     if (row.policy == kLru) contest.lru = row.Regret();
-    if (row.policy == kBelady) continue;
+    if (row.IsClairvoyant()) continue;
     if (contest.best == nullptr || row.Regret() < contest.best->Regret()) contest.best = &row;
   }
   std::vector<PolicyContest> contests;

@@ -1,6 +1,7 @@
 // Which policy does best: contests under one budget on one trace, and sums over all traces.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,10 +14,13 @@ namespace linetree {
 inline constexpr double kMostRegret = 1.15;
 inline constexpr double kMostByLru = 1.05;
 
+// What ours would reach if it knew where viewpoints are heading: the roofline of any prediction.
+inline constexpr std::array<const char*, 3> kToldPolicies = {"reuse@2", "reuse@8", "reuse@32"};
+
 // Of one trace under one budget.
 struct PolicyContest {
   std::string trace, budget;
-  const PolicyRow* best = nullptr;  // Belady left out
+  const PolicyRow* best = nullptr;  // that does not know the future
   double ours = 1, lru = 1;         // costs by the bound
 
   double ByLru() const { return ours / lru; }

@@ -28,7 +28,7 @@ absl::StatusOr<std::vector<NamedTrace>> RecordCorpus(const PolicyCorpus& corpus,
       return absl::InvalidArgumentError(absl::StrCat(path, ": expected a scene with a camera"));
     }
     for (const FlightPattern pattern : corpus.patterns) {
-      FlightTraceOptions options{corpus.width, corpus.height, {}};
+      FlightTraceOptions options{corpus.size.width, corpus.size.height, {}};
       options.options.max_relative_error = corpus.epsilon;
       const auto views = FlightViews(*file->scene, *camera, pattern, corpus.frames, corpus.seed);
       auto trace = RecordFlight(file->scene, views, options, pool, [&](double share) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/command/flags.h"
 #include "core/audit/flight_corpus.h"
 
 namespace linetree {
@@ -14,7 +15,7 @@ struct PolicyCorpus {
   std::vector<std::string> scenes;  // files
   std::vector<FlightPattern> patterns;
   int frames = 160;  // of each flight, all clients together
-  int width = 192, height = 192;
+  SizeFlags size{192, 192};
   double epsilon = 0.1;
   uint64_t seed = 1;
   int threads = 0;

@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -36,6 +38,21 @@ void Extend(std::vector<Plot>& plots, size_t first, const PolicyRow& row) {
   }
 }
 
+// A policy's name, and how many frames ahead it is told the future.
+struct ToldPolicy {
+  std::string name;
+  uint32_t frames = 0;
+};
+std::optional<ToldPolicy> SplitPolicy(const std::string& text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('@', 1));
+  ToldPolicy told{parts.first};
+  const bool has_frames = absl::StrContains(text, '@');
+  if (has_frames && (!absl::SimpleAtoi(parts.second, &told.frames) || told.frames == 0)) {
+    return std::nullopt;
+  }
+  return told;
+}
+
 }  // namespace
 
 absl::StatusOr<PolicyBudget> ParseBudget(const std::string& text) {
@@ -57,6 +74,10 @@ absl::StatusOr<PolicyBudget> ParseBudget(const std::string& text) {
       "expected bytes (1000000, 64m) or a share of the working set (25%), found '", text, "'"));
 }
 
+bool PolicyRow::IsClairvoyant() const {
+  return policy == kBelady || absl::StrContains(policy, '@');
+}
+
 absl::StatusOr<std::vector<std::string>> ParsePolicies(const std::string& text) {
   std::vector<std::string> names;
   for (const PolicyNote& note : AllPolicies()) names.emplace_back(note.name);
@@ -64,10 +85,11 @@ absl::StatusOr<std::vector<std::string>> ParsePolicies(const std::string& text) 
   if (text == "all") return names;
   std::vector<std::string> chosen = absl::StrSplit(text, ',');
   for (const std::string& name : chosen) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    return absl::InvalidArgumentError(absl::StrCat("unknown policy '", name,
-                                                   "', expected all or some of ", PolicyNames(),
-                                                   ", ", std::string(kBelady)));
+    const auto told = SplitPolicy(name);
+    if (told && std::find(names.begin(), names.end(), told->name) != names.end()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("unknown policy '", name, "', expected all or some of ", PolicyNames(), ", ",
+                     std::string(kBelady), ", each with @FRAMES behind it or without"));
   }
   return chosen;
 }
@@ -90,7 +112,10 @@ absl::StatusOr<std::vector<PolicyRow>> SimulateAll(const std::string& name, cons
   for (const std::string& policy : policies) {
     for (size_t b = 0; b < budgets.size(); ++b) {
       const auto [bytes, share] = Resolve(budgets[b], ignores_size ? set.items : set.bytes);
-      const auto result = Simulate(trace, policy, {bytes, ignores_size});
+      const auto told = SplitPolicy(policy);
+      const auto result =
+          told ? Simulate(trace, told->name, {bytes, ignores_size, told->frames})
+               : absl::InvalidArgumentError(absl::StrCat("unknown policy '", policy, "'"));
       if (!result.ok()) return result.status();
       rows.push_back({name, policy, budgets[b].text, share, bytes, *result, least[b]});
       progress(++done / steps);

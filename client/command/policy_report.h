@@ -22,7 +22,9 @@ struct PolicyBudget {
 // "25%", "64m", "1000"; INVALID_ARGUMENT for anything else.
 absl::StatusOr<PolicyBudget> ParseBudget(const std::string& text);
 
-// "all", or names with commas between them, "belady" among them; INVALID_ARGUMENT for others.
+// "all", or names with commas between them, "belady" among them, and "NAME@8" for a policy that is
+// told what is used within 8 frames (SimulationOptions::foresight_frames); INVALID_ARGUMENT for
+// others. "all" has none of these.
 absl::StatusOr<std::vector<std::string>> ParsePolicies(const std::string& text);
 
 // One policy on one trace under one budget.
@@ -35,6 +37,8 @@ struct PolicyRow {
   SimulationResult result;
   double least_rebuild_ns = 0;  // LeastRebuildCost
 
+  // Knows the future, or some of it.
+  bool IsClairvoyant() const;
   double Regret() const { return least_rebuild_ns > 0 ? result.rebuild_ns / least_rebuild_ns : 1; }
 };
 

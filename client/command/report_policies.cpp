@@ -26,10 +26,11 @@ absl::StatusOr<Json> Run(const PolicyCorpus& corpus, const Progress& progress) {
     budgets.push_back({absl::StrFormat("%g%%", 100 * share), 0, share});
   }
   std::vector<PolicyRow> rows;
+  auto policies = ParsePolicies("all");
+  policies->insert(policies->end(), kToldPolicies.begin(), kToldPolicies.end());
   double done = 0;
   for (const auto& [name, trace] : *traces) {
-    const auto more =
-        SimulateAll(name, trace, *ParsePolicies("all"), budgets, false, [](double) {});
+    const auto more = SimulateAll(name, trace, *policies, budgets, false, [](double) {});
     if (!more.ok()) return more.status();
     rows.insert(rows.end(), more->begin(), more->end());
     progress(0.8 + 0.2 * ++done / static_cast<double>(traces->size()));
@@ -93,7 +94,7 @@ ReportSection PoliciesSection(const ReportOptions& options) {
                       .patterns = AllFlightPatterns(),
                       .frames = options.quick ? 24 : 160,
                       .threads = options.threads};
-  corpus.width = corpus.height = options.quick ? 64 : 192;
+  corpus.size.width = corpus.size.height = options.quick ? 64 : 192;
   for (const char* scene : kScenes) {
     corpus.scenes.push_back(absl::StrCat(options.scenes_dir, "/", scene));
     if (options.quick) break;
@@ -105,8 +106,8 @@ ReportSection PoliciesSection(const ReportOptions& options) {
       "and replayed with every policy in caches that are too small. The clairvoyant bound is what "
       "no policy can do better than; belady knows the future, but neither costs nor sizes.";
   section.command = absl::StrCat("linetree bench policies --frames ", corpus.frames, " --width ",
-                                 corpus.width, " --height ", corpus.height);
-  section.parameters = {{"frames", corpus.frames}, {"side", corpus.width}};
+                                 corpus.size.width, " --height ", corpus.size.height);
+  section.parameters = {{"frames", corpus.frames}, {"side", corpus.size.width}};
   for (const std::string& file : corpus.scenes) {
     section.parameters["files"][file] = HashOfFile(file);
   }

@@ -25,6 +25,7 @@ const std::vector<ReportChapter>& ReportChapters() {
                                                       {"audit", AuditSection},
                                                       {"edit", EditSection},
                                                       {"policies", PoliciesSection},
+                                                      {"budget", BudgetSection},
                                                       {"restart", RestartSection}};
   return chapters;
 }

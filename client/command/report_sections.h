@@ -24,6 +24,7 @@ ReportSection LoadSection(const ReportOptions& options);
 ReportSection CertifySection(const ReportOptions& options);
 ReportSection AuditSection(const ReportOptions& options);
 ReportSection EditSection(const ReportOptions& options);
+ReportSection BudgetSection(const ReportOptions& options);
 ReportSection PoliciesSection(const ReportOptions& options);
 ReportSection RestartSection(const ReportOptions& options);
 

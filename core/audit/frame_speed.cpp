@@ -23,14 +23,16 @@ class FrameRace {
         samples_(views.size()) {}
 
   absl::Status Run(const std::function<void(double)>& progress) {
-    SceneHost host(scene_);
-    host.packets();
+    SceneHost host(scene_, options_.cache);
+    if (options_.lanes == Lanes::kSimd) host.packets();
     for (size_t i = 0; i < views_.size(); ++i) {
       if (auto s = RunTurn(host, views_[i], samples_[i]); !s.ok()) return s;
       if (progress) progress((static_cast<double>(i) + 1) / static_cast<double>(views_.size()));
     }
     speed_.memory = host.Memory();
-    speed_.explanation = host.Explain(options_.epsilon);
+    if (options_.lanes == Lanes::kSimd) speed_.explanation = host.Explain(options_.epsilon);
+    speed_.cells_built = host.totals().stats.cells_accepted;
+    speed_.evicted = host.evicted();
     return absl::OkStatus();
   }
 
@@ -72,7 +74,7 @@ class FrameRace {
     request.height = options_.height;
     request.options.limits = options_.limits;
     request.sampling = options_.sampling;
-    request.options.lanes = Lanes::kSimd;
+    request.options.lanes = options_.lanes;
     request.options.max_relative_error = options_.epsilon;
     request.options.mode = mode;
     return host.RenderFrame(request, pool_);

@@ -1,6 +1,6 @@
-// How fast frames by packets are with the surface trees and without: cached and classical frames of
-// the same view in turn, in one process, so that what else the machine does meets both alike; and
-// how far the cached ones are off.
+// How fast frames are with the cache and without: cached and classical frames of the same view in
+// turn, in one process, so that what else the machine does meets both alike; and how far the cached
+// ones are off.
 #pragma once
 
 #include <functional>
@@ -19,6 +19,8 @@ struct FrameSpeedOptions {
   double epsilon = 0.02;
   PathLimits limits;
   Sampling sampling{};
+  Lanes lanes = Lanes::kSimd;
+  CacheOptions cache{};
 };
 
 struct FrameSpeed {
@@ -33,6 +35,9 @@ struct FrameSpeed {
   // After the last frame: what is kept for the scene, and what the planner does about it.
   std::vector<MemoryPart> memory;
   SceneHost::Explanation explanation;
+  // Of all frames of the last repeat: cells that were certified, and those that made room.
+  uint64_t cells_built = 0;
+  Evicted evicted;
   // Of all frames, against classical ones of the same lanes: |cached - classical| / max(classical,
   // RadianceFloor) of a pixel's worst channel, what 99.9 % of the pixels of the worst frame do not
   // exceed, and the pixels beyond epsilon.

@@ -75,10 +75,31 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
       if (owned) works.push_back({std::move(owned), object, uses * weight});
     });
   });
-  store_.PlantWanted(TreeBudget(), [&](size_t object) {
+  const bool all_planted = store_.PlantWanted(TreeBudget(), [&](size_t object) {
     return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
   });
+  unkept_ += all_planted ? 0 : 1;
   return works;
+}
+
+uint64_t SurfaceCache::Room() const {
+  const uint64_t held = store_.byte_size(), budget = TreeBudget();
+  return budget > held ? budget - held : 0;
+}
+
+// As much as those that are there, nodes and all; the first ones as little as may be.
+uint64_t SurfaceCache::BytesPerCell() const {
+  const uint64_t cells = store_.cell_count();
+  return std::max<uint64_t>(sizeof(CellLights), cells == 0 ? 0 : store_.byte_size() / cells);
+}
+
+void SurfaceCache::KeepWhatFits(std::vector<Work>& works) {
+  const uint64_t fitting = Room() / BytesPerCell();
+  if (works.size() <= fitting) return;
+  unkept_ += works.size() - fitting;
+  std::stable_sort(works.begin(), works.end(),
+                   [](const Work& a, const Work& b) { return a.points > b.points; });
+  works.erase(works.begin() + static_cast<std::ptrdiff_t>(fitting), works.end());
 }
 
 void SurfaceCache::Trim(std::vector<Work>& works, const Thrift& thrift, double& left) {
@@ -153,6 +174,9 @@ std::vector<SurfaceCache::Work> SurfaceCache::Publish(std::vector<Work> works, c
       }
     }
     if (!ShouldDivide(work, *node.payload, thrift)) continue;
+    // Whose children nobody certifies has lost what was known of it.
+    const uint64_t children = 4 + next.size();
+    if (Room() < sizeof(SurfaceNode::Children) + children * BytesPerCell()) continue;
     if (!store_.Divide(work.object, node, clock_, TreeBudget(), /*owned=*/true)) continue;
     for (SurfaceNode& child : *node.children) {
       next.push_back(
@@ -185,7 +209,7 @@ SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop
   const bool is_limited = thrift.price != nullptr && std::isfinite(thrift.most_work);
   double left = thrift.most_work;
   if (is_limited) Trim(works, thrift, left);
-  while (!works.empty()) {
+  for (KeepWhatFits(works); !works.empty(); KeepWhatFits(works)) {
     if (is_limited) AllowDivisions(works, thrift, left);
     Certify(works, loop, thrift);
     works = Publish(std::move(works), thrift, certified);

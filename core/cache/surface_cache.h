@@ -107,7 +107,13 @@ class SurfaceCache {
   void EndFrame(const FrameMark& mark);
   // As BlockLedger::SetPolicy.
   void SetPolicy(std::string_view name);
+<<<<<<< HEAD
   Evicted evicted() const { return evicted_.now(); }
+=======
+  Evicted evicted() const { return store_.evicted(); }
+  // Cells and trees that were asked for and found no room, since the scene was loaded.
+  uint64_t unkept() const { return unkept_; }
+>>>>>>> cache9
   // Bytes beside the trees: of what eviction needs to know.
   uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
@@ -130,6 +136,12 @@ class SurfaceCache {
   // Whether smaller cells are worth their cost, with what is known of this one.
   bool ShouldDivide(const Work& work, const CellLights& lights, const Thrift& thrift) const;
   std::vector<Work> CollectUsed(double weight, const Thrift& thrift);
+  // Keeps those of the works that most points ask for and that there is room for: what is certified
+  // without room to keep it is work for nobody.
+  void KeepWhatFits(std::vector<Work>& works);
+  // What is left of the trees' budget, and what a cell takes, as far as is known.
+  uint64_t Room() const;
+  uint64_t BytesPerCell() const;
   // Drops works that cost more than `left`, which is reduced by what the others do.
   static void Trim(std::vector<Work>& works, const Thrift& thrift, double& left);
   // Says which of the works may be divided, for what is left.
@@ -161,6 +173,7 @@ class SurfaceCache {
   TreeStore<SurfaceTree> store_;
   BuildCosts costs_;
   AheadCounters ahead_;
+  std::atomic<uint64_t> unkept_{0};
   // Shared by those who build; who has it alone may change trees as a whole. Taken before the next.
   mutable std::shared_mutex builders_mutex_;
   mutable std::mutex ledger_mutex_;

@@ -80,17 +80,18 @@ class TreeStore {
     if (!wanted.load(std::memory_order_relaxed)) wanted.store(true, std::memory_order_relaxed);
   }
   // Trees for the objects that readers asked for, as far as `memory_bytes` go: those
-  // that may_grow(size_t object) -> bool lets grow.
+  // that may_grow(size_t object) -> bool lets grow. False when there was no room for one.
   template <class Fn>
-  void PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
+  bool PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
     MakeIndex(memory_bytes);
     const Index* index = index_.get();
-    if (index == nullptr) return;
+    if (index == nullptr) return false;
     for (size_t object = 0; object < index->trees.size(); ++object) {
       if (!index->wanted[object].exchange(false, std::memory_order_relaxed)) continue;
       if (index->trees[object] || !may_grow(object)) continue;
-      if (!Plant(object, memory_bytes)) return;
+      if (!Plant(object, memory_bytes)) return false;
     }
+    return true;
   }
 
   // Puts what somebody has kept of a cell back, into cells that are divided for it as far as need

@@ -53,6 +53,9 @@ class EvictionPolicy {
   // viewpoints are heading; it says so anew when the item has been used or the guess is no longer
   // good. Infinity: not at all.
   virtual void ExpectUse(uint64_t /*id*/, double /*frames*/) {}
+  // The owner says so of all items that are used within so many frames: what it does not speak of
+  // is used later, if at all. 0, as in the beginning: of some.
+  virtual void SetForesight(double /*frames*/) {}
 
   // Of what the policy remembers, beside itself.
   virtual uint64_t ByteSize() const = 0;

@@ -81,8 +81,11 @@ class Reuse : public EvictionPolicy {
   }
   void NextFrame() override { ++now_; }
   void ExpectUse(uint64_t id, double frames) override {
-    pasts_[items_.At(id)].expected = static_cast<float>(now_ + frames);
+    const ItemSlot slot = items_.At(id);
+    pasts_[slot].expected = static_cast<float>(now_ + frames);
+    Offer(slot);  // the batch has what it was worth before
   }
+  void SetForesight(double frames) override { foresight_ = frames; }
   uint64_t ByteSize() const override {
     return items_.ByteSize() + pasts_.capacity() * sizeof(Past) +
            (batch_.capacity() + recent_.capacity()) * sizeof(Candidate) + times_.ByteSize();
@@ -100,6 +103,7 @@ class Reuse : public EvictionPolicy {
     uint64_t id;
     ItemSlot slot;
     uint32_t used;
+    float expected;
     double worth;
     bool operator<(const Candidate& o) const { return worth < o.worth; }
     bool operator>(const Candidate& o) const { return worth > o.worth; }
@@ -125,19 +129,21 @@ class Reuse : public EvictionPolicy {
       past.run = 0;
     }
   }
+  double UsesPerFrame(const Past& past) const {
+    const double now = now_;
+    if (past.expected >= now) return 1.0 / std::max(1.0, static_cast<double>(past.expected) - now);
+    const double usual = times_.UsesPerFrame(ClassOf(past), now_ - past.used);
+    return foresight_ > 0 ? std::min(usual, 1.0 / (foresight_ + 1)) : usual;
+  }
   double Worth(ItemSlot slot) const {
     const Past& past = pasts_[slot];
     const PolicyItem& item = items_[slot].item;
-    const double uses =
-        past.expected >= 0
-            ? 1.0 / std::max(1.0, static_cast<double>(past.expected) - static_cast<double>(now_))
-            : times_.UsesPerFrame(ClassOf(past), now_ - past.used);
-    return uses * item.rebuild_ns / static_cast<double>(item.bytes);
+    return UsesPerFrame(past) * item.rebuild_ns / static_cast<double>(item.bytes);
   }
   bool IsGood(const Candidate& candidate) const {
     const ItemSlot slot = items_.Find(candidate.id);
     return slot == candidate.slot && held_.Holds(slot) && pasts_[slot].used == candidate.used &&
-           !IsSpared(slot);
+           pasts_[slot].expected == candidate.expected && !IsSpared(slot);
   }
   // Past candidates that have changed since they became some; false when the batch is used up.
   bool SkipToGood() {
@@ -162,7 +168,8 @@ class Reuse : public EvictionPolicy {
     next_ = 0;
   }
   Candidate CandidateOf(ItemSlot slot) const {
-    return {items_[slot].item.id, slot, pasts_[slot].used, Worth(slot)};
+    const Past& past = pasts_[slot];
+    return {items_[slot].item.id, slot, past.used, past.expected, Worth(slot)};
   }
   bool IsSpared(ItemSlot slot) const { return pasts_[slot].spared == now_; }
 
@@ -194,6 +201,7 @@ class Reuse : public EvictionPolicy {
   std::vector<Past> pasts_;  // by slot
   ReuseTimes times_{kClasses};
   uint32_t now_ = 1;
+  double foresight_ = 0;
   std::vector<Candidate> batch_;  // those to go first, from next_ on
   size_t next_ = 0;
   std::vector<Candidate> recent_;  // a heap of what was used since, the first to go on top

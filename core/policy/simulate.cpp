@@ -48,6 +48,7 @@ class Replay {
     held_.emplace(item.id, item.bytes);
     bytes_ += item.bytes;
   }
+  bool Holds(uint64_t id) const { return held_.contains(id); }
   const SimulationResult& result() const { return result_; }
 
  private:
@@ -68,6 +69,51 @@ class Replay {
   uint64_t bytes_ = 0;
 };
 
+// Says what is used within a number of frames, when that comes to be so.
+class Foresight {
+ public:
+  Foresight(const Trace& trace, uint32_t frames) : trace_(trace), frames_(frames) {
+    if (frames == 0) return;
+    frame_.reserve(trace.size());
+    for (size_t i = 0; i < trace.size(); ++i) {
+      if (i == 0 || trace[i].time != trace[i - 1].time) begins_.push_back(i);
+      frame_.push_back(static_cast<uint32_t>(begins_.size() - 1));
+    }
+    begins_.push_back(trace.size());
+    before_.assign(trace.size(), kNeverAgain);
+    for (size_t i = 0; i < trace.size(); ++i) {
+      const int64_t next = trace[i].next;
+      if (next != kNeverAgain) before_[static_cast<size_t>(next)] = static_cast<int64_t>(i);
+    }
+  }
+
+  // The frame of event `i`, its first, begins: what the last one of those ahead uses is within
+  // reach.
+  void BeginFrame(size_t i, const Replay& replay, EvictionPolicy& policy) const {
+    if (frames_ == 0) return;
+    const size_t last = frame_[i] + size_t{frames_};
+    if (last + 1 >= begins_.size()) return;
+    for (size_t k = begins_[last]; k < begins_[last + 1]; ++k) {
+      // Who is used before that has been spoken of.
+      const bool is_next = before_[k] == kNeverAgain || static_cast<size_t>(before_[k]) < i;
+      if (is_next && replay.Holds(trace_[k].id)) policy.ExpectUse(trace_[k].id, frames_);
+    }
+  }
+  // Event `i` has been replayed.
+  void AfterUse(size_t i, const Replay& replay, EvictionPolicy& policy) const {
+    if (frames_ == 0 || trace_[i].next == kNeverAgain || !replay.Holds(trace_[i].id)) return;
+    const uint32_t gap = frame_[static_cast<size_t>(trace_[i].next)] - frame_[i];
+    if (gap <= frames_) policy.ExpectUse(trace_[i].id, gap);
+  }
+
+ private:
+  const Trace& trace_;
+  const uint32_t frames_;
+  std::vector<uint32_t> frame_;  // number of each event's
+  std::vector<size_t> begins_;   // each frame's first event, and the end
+  std::vector<int64_t> before_;  // the last event with the same id
+};
+
 }  // namespace
 
 absl::StatusOr<SimulationResult> Simulate(const Trace& trace, std::string_view name,
@@ -81,11 +127,16 @@ absl::StatusOr<SimulationResult> Simulate(const Trace& trace, std::string_view n
     if (!made.ok()) return made.status();
     policy = *std::move(made);
   }
+  policy->SetForesight(options.foresight_frames);
   Replay replay(*policy, options);
+  const Foresight foresight(trace, options.foresight_frames);
   for (size_t i = 0; i < trace.size(); ++i) {
-    if (i > 0 && trace[i].time != trace[i - 1].time) policy->NextFrame();
+    const bool begins = i == 0 || trace[i].time != trace[i - 1].time;
+    if (begins && i > 0) policy->NextFrame();
+    if (begins) foresight.BeginFrame(i, replay, *policy);
     next = trace[i].next;
     replay.Use(trace[i]);
+    foresight.AfterUse(i, replay, *policy);
   }
   return replay.result();
 }

@@ -15,6 +15,9 @@ struct SimulationOptions {
   uint64_t budget_bytes = 0;
   // Every item counts as one byte; the budget is a number of items.
   bool ignores_size = false;
+  // The policy is told what is used within so many frames, as by an owner who knew the paths that
+  // far ahead (SetForesight, ExpectUse); 0: nothing.
+  uint32_t foresight_frames = 0;
 };
 
 struct SimulationResult {

@@ -220,6 +220,12 @@ int WaveOf(uint32_t ray) {
   return mixed % 8 == 0 ? 2 : 3;
 }
 
+// In the first waves a ray stands for hundreds, but says where one is: of what certifies a cell or
+// divides it, it counts for a quarter at most. Else every frame divides the cells that one of its
+// first rays happens to meet, few as their own rays may be, and frames after frames all of them.
+constexpr double kMostPointsOfRay = kMinSurfaceUses / 4;
+constexpr double kMostPathUsesOfRay = kMinPathUses / 4.0;
+
 void Batch::AnswerWithTrees(uint32_t ray, const LightLists& lights, const PathCache::Reader& paths,
                             RayCounts& counts) {
   const Hit& hit = hits_[ray];
@@ -258,7 +264,8 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     const bool is_last = wave == kWaves - 1;
     // Each ray of the wave stands for so many.
     const double weight = static_cast<double>(rest.size()) / static_cast<double>(part.size() + 1);
-    const auto points = static_cast<uint32_t>(std::lround(std::max(1.0, weight)));
+    const auto points =
+        static_cast<uint32_t>(std::lround(std::clamp(weight, 1.0, kMostPointsOfRay)));
     std::mutex samples_mutex;
     std::vector<PathCache::Sample> samples;
     ForChunks(part.size(), &stats_.base, [&](size_t begin, size_t end, RayCounts& counts) {
@@ -274,12 +281,18 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     if (IsCancelled()) return;
     SurfaceCache::Thrift thrift;
     thrift.ahead = options_.ahead;
-    uint64_t certified = trees.surfaces.Refine(/*weight=*/1, loop, thrift).cells;
+    const uint64_t surfaces = trees.surfaces.Refine(/*weight=*/1, loop, thrift).cells;
+    uint64_t paths = 0, tried_paths = 0;
+    const ParallelLoop counted = [&](size_t count, const std::function<void(size_t)>& body) {
+      tried_paths += count;
+      loop(count, body);
+    };
     if (!is_last) {
-      certified += trees.paths.Refine(options_.limits, samples, weight, loop, options_.ahead);
+      paths = trees.paths.Refine(options_.limits, samples, std::min(weight, kMostPathUsesOfRay),
+                                 counted, options_.ahead);
     }
-    stats_.cells_tried += certified;
-    stats_.cells_accepted += certified;
+    stats_.cells_tried += surfaces + tried_paths;
+    stats_.cells_accepted += surfaces + paths;
   }
 }
 

@@ -135,9 +135,11 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
       surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
       plan_(scene_->objects.size(), cache_options.always_ask),
+      always_asks_(cache_options.always_ask),
       policy_(cache_options.policy) {
   surfaces_.SetPolicy(policy_);
   paths_.SetPolicy(policy_);
+  pause_.Reset(cache_options.memory_bytes);
 }
 
 void SceneHost::Keep(std::shared_ptr<CellJournal> journal) {
@@ -160,6 +162,7 @@ Adopted SceneHost::Adopt(SceneHost& former) {
 }
 
 void SceneHost::SetMemoryBytes(uint64_t memory_bytes) {
+  pause_.Reset(memory_bytes);
   const MemoryShares shares(memory_bytes);
   cache_.SetMemoryBytes(shares.radiance);
   surfaces_.SetMemoryBytes(shares.surfaces);
@@ -188,8 +191,28 @@ Evicted SceneHost::evicted() const {
   return {surfaces.cells + paths.cells, surfaces.bytes + paths.bytes};
 }
 
-void SceneHost::EndFrame(const RenderOptions& options) {
+RenderOptions SceneHost::OptionsFor(const RenderOptions& options) {
+  RenderOptions own = options;
+  const bool certified = options.mode == Mode::kCached && options.judge == JudgeKind::kCertified;
+  // Who records wants to know what would be used.
+  if (certified && !always_asks_ && recorder_ == nullptr && pause_.Take()) {
+    own.mode = Mode::kClassical;
+  }
+  return own;
+}
+
+void SceneHost::EndFrame(const RenderOptions& options, const FrameStats& stats, uint64_t unkept) {
   if (options.mode != Mode::kCached || options.judge != JudgeKind::kCertified) return;
+  CacheYield yield{.rays = stats.pixels, .unkept = surfaces_.unkept() - unkept};
+  // Rays that need no search anyway look as if they were known: no cell serves many more than it
+  // was divided for.
+  const double served =
+      kMinSurfaceUses * static_cast<double>(surfaces_.CellCount() + paths_.CellCount());
+  yield.known =
+      std::min(stats.interpolated + stats.replayed + stats.residual, static_cast<uint64_t>(served));
+  yield.tried = stats.cells_tried + yield.unkept;
+  yield.unkept += stats.cells_tried - stats.cells_accepted;
+  pause_.Note(yield);
   FrameMark mark;
   if (recorder_ != nullptr && !options.ahead) {
     mark = {recorder_, recorder_->BeginFrame(), HashOfText(scene_->version)};
@@ -270,15 +293,18 @@ absl::Status SceneHost::RenderPackets(const FrameRequest& request, WorkerPool& p
   return status;
 }
 
-absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, WorkerPool& pool,
+absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& asked, WorkerPool& pool,
                                              const CancelToken* cancel, const Progress& progress) {
-  if (auto s = ValidateCamera(request.camera); !s.ok()) return s;
-  if (auto s = ValidateSize(request.width, request.height, limits_); !s.ok()) return s;
-  if (auto s = ValidateOptions(request.options); !s.ok()) return s;
-  if (auto s = ValidateSamples(request.sampling, request.width, request.height, limits_); !s.ok()) {
+  if (auto s = ValidateCamera(asked.camera); !s.ok()) return s;
+  if (auto s = ValidateSize(asked.width, asked.height, limits_); !s.ok()) return s;
+  if (auto s = ValidateOptions(asked.options); !s.ok()) return s;
+  if (auto s = ValidateSamples(asked.sampling, asked.width, asked.height, limits_); !s.ok()) {
     return s;
   }
   const Stopwatch stopwatch;
+  FrameRequest request = asked;
+  request.options = OptionsFor(asked.options);
+  const uint64_t unkept = surfaces_.unkept();
   Frame frame = EmptyFrame(*scene_, request);
   absl::Status status;
   if (GoesByPackets(request.options)) {
@@ -290,7 +316,7 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
                            progress, frame);
   }
   if (!status.ok()) return status;
-  EndFrame(request.options);
+  EndFrame(request.options, frame.stats, unkept);
   frame.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   if (request.options.ahead) {
@@ -303,14 +329,16 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& request, Worker
 }
 
 absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
-                                              const RenderOptions& options, WorkerPool& pool,
+                                              const RenderOptions& asked, WorkerPool& pool,
                                               const CancelToken* cancel) {
-  if (auto s = ValidateOptions(options); !s.ok()) return s;
+  if (auto s = ValidateOptions(asked); !s.ok()) return s;
   if (rays.size() > limits_.max_rays) {
     return absl::ResourceExhaustedError(
         absl::StrCat("rays: at most ", limits_.max_rays, " are allowed, got ", rays.size()));
   }
   const Stopwatch stopwatch;
+  const RenderOptions options = OptionsFor(asked);
+  const uint64_t unkept = surfaces_.unkept();
   RayBatch batch;
   std::vector<Ray> unit_rays;
   if (auto s = MakeUnitRays(rays, pool, unit_rays, &batch.stats.cpu_ms); !s.ok()) return s;
@@ -326,7 +354,7 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
                         nullptr, batch.answers, batch.stats);
   }
   if (!status.ok()) return status;
-  EndFrame(options);
+  EndFrame(options, batch.stats, unkept);
   batch.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   ++totals_.ray_batches;

@@ -17,6 +17,7 @@
 #include "core/frame/plan_explanation.h"
 #include "core/packet/packet_tracer.h"
 #include "core/render/answer_rays.h"
+#include "core/render/cache_pause.h"
 #include "core/render/frame.h"
 #include "core/render/options.h"
 #include "core/render/scene_memory.h"
@@ -124,8 +125,10 @@ class SceneHost {
   AheadTotals ahead() const;
 
  private:
-  // After a frame or a batch of rays that has asked the trees.
-  void EndFrame(const RenderOptions& options);
+  // What a request gets: no cache while that pauses.
+  RenderOptions OptionsFor(const RenderOptions& options);
+  // After a frame or a batch of rays; `unkept` is what surfaces_ said before.
+  void EndFrame(const RenderOptions& options, const FrameStats& stats, uint64_t unkept);
   // By packets, or ray by ray.
   bool GoesByPackets(const RenderOptions& options) const;
   absl::Status RenderRays(const FrameRequest& request, WorkerPool& pool, const CancelToken* cancel,
@@ -144,6 +147,8 @@ class SceneHost {
   SurfaceCache surfaces_;
   PathCache paths_;
   FramePlan plan_;
+  CachePause pause_;
+  const bool always_asks_;
   TraceRecorder* recorder_ = nullptr;
   mutable std::mutex policy_mutex_;
   std::string policy_;  // guarded by policy_mutex_

@@ -358,5 +358,33 @@ TEST_F(SurfaceCacheTest, RecordsWhatFramesUse) {
   EXPECT_GT(set.rebuild_ns, 100 * static_cast<double>(cache.CellCount()));
 }
 
+TEST_F(SurfaceCacheTest, NothingIsCertifiedThatFindsNoRoom) {
+  // Who certifies without looking for room does so again and again.
+  const auto work_in = [&](uint64_t memory_bytes, uint64_t& kept, uint64_t& unkept) {
+    SurfaceCache cache(tracer_, memory_bytes);
+    uint64_t tried = 0;
+    const ParallelLoop counted = [&](size_t count, const std::function<void(size_t)>& body) {
+      tried += count;
+      kSerial(count, body);
+    };
+    for (uint64_t round = 0; round < 6; ++round) {
+      Use(cache, 3, 2000);
+      kept += cache.Refine(100, counted);
+      cache.EndFrame({});
+    }
+    unkept = cache.unkept();
+    return tried;
+  };
+  uint64_t all_kept = 0, all_unkept = 0, kept = 0, unkept = 0;
+  const uint64_t all_tried = work_in(100'000'000, all_kept, all_unkept);
+  EXPECT_EQ(all_unkept, 0u);
+  const uint64_t tried = work_in(30'000, kept, unkept);
+  EXPECT_GT(kept, 0u);
+  EXPECT_LT(kept, all_kept / 2);
+  EXPECT_LT(tried, all_tried / 2);
+  EXPECT_LT(tried, 2 * kept) << "those that are to be divided are looked at, too";
+  EXPECT_GT(unkept, 0u);
+}
+
 }  // namespace
 }  // namespace linetree

@@ -44,5 +44,22 @@ TEST(Simulate, IsTheSameEveryTime) {
   }
 }
 
+TEST(Simulate, ForesightComesNearToBelady) {
+  test::Random random(11);
+  const Trace trace = test::RandomTrace(random, 200, 400, 30, /*equal=*/true);
+  const auto misses = [&](std::string_view policy, uint32_t foresight) {
+    const auto result =
+        Simulate(trace, policy, {.budget_bytes = 100, .foresight_frames = foresight});
+    return static_cast<double>(result->requests - result->hits);
+  };
+  // Uses are independent of each other: nothing can be learnt from them.
+  const double least = misses(kBelady, 0);
+  EXPECT_GT(misses("reuse", 0), 1.3 * least);
+  EXPECT_LT(misses("reuse", 4), 0.9 * misses("reuse", 0));
+  EXPECT_LT(misses("reuse", 1000), 1.03 * least);
+  EXPECT_GE(misses("reuse", 1000), least);
+  EXPECT_EQ(misses("lru", 1000), misses("lru", 0)) << "nobody listens";
+}
+
 }  // namespace
 }  // namespace linetree

@@ -226,5 +226,54 @@ TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
   EXPECT_EQ(host.policy(), AllPolicies().back().name);
 }
 
+// Frames of a cache that is too small do without it, and try it again; its twin goes on asking.
+TEST(SceneHostPauseTest, ACacheThatIsTooSmallIsTriedNowAndThen) {
+  const auto scene = test::BallsOnFloor(300, 70);
+  WorkerPool pool(2);
+  FrameRequest request;
+  request.camera = scene->cameras[0];
+  request.width = request.height = 96;
+  request.options.max_relative_error = 0;
+  const auto tries = [&](const CacheOptions& options) {
+    SceneHost host(scene, options);
+    std::vector<int> frames;
+    for (int i = 0; i < 20; ++i) {
+      const uint64_t before = host.surfaces().unkept();
+      const auto frame = host.RenderFrame(request, pool);
+      EXPECT_TRUE(frame.ok()) << frame.status();
+      request.options.mode = Mode::kClassical;
+      EXPECT_EQ(frame->radiance, host.RenderFrame(request, pool)->radiance);
+      request.options.mode = Mode::kCached;
+      if (frame->stats.cells_tried > 0 || host.surfaces().unkept() > before) frames.push_back(i);
+    }
+    return frames;
+  };
+  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes}), testing::ElementsAre(0, 16));
+  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes, .always_ask = true}),
+              testing::SizeIs(20));
+  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes - 1}), testing::IsEmpty());
+}
+
+// Cells are divided for what a frame has in them, not for where its first rays happen to fall: who
+// comes by again finds them as they are.
+TEST(SceneHostSharingTest, TheSameFramesOnceMoreBuildFewCellsOnSurfaces) {
+  const auto scene = test::BallsOnFloor(8, 70);
+  SceneHost host(scene);
+  WorkerPool pool(2);
+  uint64_t cells[2];
+  for (uint64_t& count : cells) {
+    for (int view = 0; view < 10; ++view) {
+      FrameRequest request;
+      request.camera = scene->cameras[0];
+      request.camera.eye.x += 0.2 * view;
+      request.width = request.height = 128;
+      ASSERT_TRUE(host.RenderFrame(request, pool).ok());
+    }
+    count = host.surfaces().CellCount();
+  }
+  EXPECT_GT(cells[0], 50u);
+  EXPECT_LT(static_cast<double>(cells[1]), 1.1 * static_cast<double>(cells[0]));
+}
+
 }  // namespace
 }  // namespace linetree

@@ -193,6 +193,7 @@ TEST(MetamorphicTest, ThreadsKeepBits) {
         WorkerPool pool(threads);
         CacheOptions cache;
         cache.memory_bytes = i < 2 ? uint64_t{64} << 20 : 100'000;
+        cache.always_ask = true;  // small caches would pause
         SceneHost host(scene, cache);
         std::vector<Rgb> radiances;
         for (int round = 0; round < 3; ++round) {

@@ -70,6 +70,7 @@ uint64_t ExpectPromise(const ScenePtr& scene, const std::vector<Ray>& rays, Larg
   for (const double bound : options.bounds) {
     CacheOptions cache;
     cache.memory_bytes = options.memory_bytes;
+    cache.always_ask = true;  // small caches would pause
     SceneHost host(scene, cache);
     for (int round = 0; round < options.rounds; ++round) {
       const auto answers = Certified(host, rays, bound, options.limits, pool);
