@@ -107,13 +107,9 @@ class SurfaceCache {
   void EndFrame(const FrameMark& mark);
   // As BlockLedger::SetPolicy.
   void SetPolicy(std::string_view name);
-<<<<<<< HEAD
   Evicted evicted() const { return evicted_.now(); }
-=======
-  Evicted evicted() const { return store_.evicted(); }
   // Cells and trees that were asked for and found no room, since the scene was loaded.
   uint64_t unkept() const { return unkept_; }
->>>>>>> cache9
   // Bytes beside the trees: of what eviction needs to know.
   uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
