@@ -188,7 +188,7 @@ TEST(BenchPoliciesCommand, ReplaysFlightsWithEveryPolicy) {
   EXPECT_THAT(run.out, HasSubstr("To reach: the best policy at most 1.15 x the bound: "));
   const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
   EXPECT_EQ(json["contests"].size(), 2u * 3);
-  ASSERT_EQ(json["rows"].size(), 2u * 3 * 12);
+  ASSERT_EQ(json["rows"].size(), 2u * 3 * 15);
   double least = 2;
   for (const auto& row : json["rows"]) {
     EXPECT_GE(row["regret"], 1 - 1e-9) << row["policy"];

@@ -19,10 +19,10 @@ std::vector<std::string> BenchRays(std::vector<std::string> more) {
 TEST(BenchRaysCommand, PrintsBothKindsOfBatches) {
   TempDir dir;
   const Finished run =
-      RunLinetree(BenchRays({"--scene", SourceFile("scenes/many_lights.textproto"), "--scene",
+      RunLinetree(BenchRays({"--scene", SourceFile("scenes/face.textproto"), "--scene",
                              SourceFile("scenes/spd/balls_2.nff"), "--json", dir.File("r.json")}));
   ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
-  EXPECT_THAT(run.out, HasSubstr("many_lights  coherent"));
+  EXPECT_THAT(run.out, HasSubstr("face     coherent"));
   EXPECT_THAT(run.out, HasSubstr("balls_2      incoherent"));
   const auto json = nlohmann::json::parse(std::ifstream(dir.File("r.json")));
   ASSERT_EQ(json["scenes"].size(), 2u);
