@@ -12,10 +12,6 @@
 namespace linetree {
 namespace {
 
-// Nodes are floats, at most 1.64^2 of whose largest rounding reaches the sum; so does that of the
-// weights and products when the sum is evaluated in float (12 of 2^-24), where the coordinates are
-// off by 2^-24 of the cell, along which the polynomial changes by at most 9 times its largest node.
-constexpr double kNodeRounding = 0x1p-18;
 constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
 // Of the height of a light above a plane, relative to the coordinates it comes from.

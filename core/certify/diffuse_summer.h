@@ -28,6 +28,13 @@ inline constexpr int kMinSummedLights = 1;
 // that is near. What is left in a sum is off by no more.
 inline constexpr double kMaxTermSpread = 1.0 / 64;
 
+// Rounding of a sum's answer, relative to its largest node. Nodes are floats, at most 1.64^2 of
+// whose largest rounding reaches the sum; so does that of the weights and products when the sum is
+// evaluated in float (12 of 2^-24), where the two coordinates are off by 2^-24 of the cell, along
+// each of which the polynomial changes by at most 9 times its largest node: 33 of 2^-24, rounded up
+// to 64. In double, of which only the first part is seen, no more than a 24th of it is used.
+inline constexpr double kNodeRounding = 0x1p-18;
+
 class DiffuseSummer {
  public:
   enum class Lanes { kSimd, kScalar };
