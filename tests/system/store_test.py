@@ -90,7 +90,7 @@ class Store(unittest.TestCase):
         with self.serve() as server:
             cameras = [camera.name for camera in server.stub.DescribeScene(
                 service_pb2.DescribeSceneRequest(scene="room")).cameras]
-            classical = {camera: frame(server.stub, camera, mode=service_pb2.CLASSICAL)[0]
+            classical = {camera: frame(server.stub, camera, mode=service_pb2.CLASSICAL, size=192)[0]
                          for camera in cameras}
         committed = 0
         for round_ in range(KILLS):
@@ -101,7 +101,7 @@ class Store(unittest.TestCase):
                                         f"round {round_}, seed {seed}")
                 committed = store.cells_restored + store.cells_left
                 for camera in moments.sample(cameras, moments.randint(1, len(cameras))):
-                    tiles, _ = frame(server.stub, camera)
+                    tiles, _ = frame(server.stub, camera, size=192)
                     self.assertEqual(tiles, classical[camera], f"round {round_}, seed {seed}")
                 if moments.random() < 0.5:
                     served.wait_until(

@@ -23,7 +23,7 @@ TEST(BenchRaysCommand, PrintsBothKindsOfBatches) {
                              SourceFile("scenes/spd/balls_2.nff"), "--json", dir.File("r.json")}));
   ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("face     coherent"));
-  EXPECT_THAT(run.out, HasSubstr("balls_2      incoherent"));
+  EXPECT_THAT(run.out, HasSubstr("balls_2  incoherent"));
   const auto json = nlohmann::json::parse(std::ifstream(dir.File("r.json")));
   ASSERT_EQ(json["scenes"].size(), 2u);
   for (const auto& scene : json["scenes"]) {

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "tests/client/command/program.h"
-#include "tests/support/sanitizer_share.h"
 
 namespace linetree {
 namespace {
@@ -126,7 +125,6 @@ TEST(BenchSpeedCommand, StagesAndReasonsArePrintedWhenAskedFor) {
 
 // What is missed is reported, and is no failure.
 TEST(BenchSpeedCommand, TargetsAreAReport) {
-  if (test::kSanitizerShare > 1) GTEST_SKIP() << "frames of 1920 x 1080: what they run is above";
   TempDir dir;
   const Finished run =
       BenchSpeed({"--targets", "--target-scenes", "room:18:3", "--json", dir.File("t.json")});
