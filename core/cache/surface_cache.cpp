@@ -94,7 +94,8 @@ uint64_t SurfaceCache::BytesPerCell() const {
 }
 
 void SurfaceCache::KeepWhatFits(std::vector<Work>& works) {
-  const uint64_t fitting = Room() / BytesPerCell();
+  // One at least: what is held may be dear, and makes room when more comes.
+  const uint64_t fitting = std::max<uint64_t>(1, Room() / BytesPerCell());
   if (works.size() <= fitting) return;
   unkept_ += works.size() - fitting;
   std::stable_sort(works.begin(), works.end(),
@@ -252,7 +253,8 @@ void SurfaceCache::SetMemoryBytes(uint64_t memory_bytes) {
 }
 
 void SurfaceCache::Evict() {
-  ledger_.Evict(store_, std::min(EvictionTarget(memory_bytes_), TreeBudget()), pinned_);
+  // Of what the ledger leaves, too, an eighth stays free, or nothing new would ever fit.
+  ledger_.Evict(store_, EvictionTarget(TreeBudget()), pinned_);
   NoteLedger();
 }
 

@@ -190,8 +190,8 @@ TEST_F(SceneHostTest, AnEmptySceneIsAllBackground) {
 // Three sessions whose cells find no room, while the policy changes.
 TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
   const auto scene = test::BallsOnFloor(8, 70);
-  constexpr uint64_t kBudget = 300'000;  // without it surface trees alone would take 113,000
-  SceneHost host(scene, {.memory_bytes = kBudget});
+  constexpr uint64_t kBudget = 120'000;  // surface trees alone would take as much
+  SceneHost host(scene, {.memory_bytes = kBudget, .always_ask = true});
   WorkerPool pool(2);
   const auto render = [&](int view, Mode mode) {
     FrameRequest request;
@@ -217,6 +217,10 @@ TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
     render(4, Mode::kCached);
   }
   for (std::thread& session : sessions) session.join();
+  // What the sessions had time to evict depends on who came first; other views take the rest.
+  for (int view = 5; view < 30 && host.surfaces().evicted().cells == 0; ++view) {
+    render(view, Mode::kCached);
+  }
   EXPECT_GT(host.surfaces().evicted().cells, 0u);
   EXPECT_GT(host.paths().evicted().cells, 0u);
   EXPECT_EQ(host.evicted().cells, host.surfaces().evicted().cells + host.paths().evicted().cells);
