@@ -52,7 +52,8 @@ const SurfaceTree* SurfaceCache::Reader::TreeOf(size_t object) const {
   return tree;
 }
 
-std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const Thrift& thrift) {
+std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const Thrift& thrift,
+                                                          uint64_t& unkept) {
   const EpochGuard reading;
   ++clock_;
   std::vector<Work> works;
@@ -78,7 +79,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
   const bool all_planted = store_.PlantWanted(TreeBudget(), [&](size_t object) {
     return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
   });
-  unkept_ += all_planted ? 0 : 1;
+  unkept += all_planted ? 0 : 1;
   return works;
 }
 
@@ -93,19 +94,22 @@ uint64_t SurfaceCache::BytesPerCell() const {
   return std::max<uint64_t>(sizeof(CellLights), cells == 0 ? 0 : store_.byte_size() / cells);
 }
 
-void SurfaceCache::KeepWhatFits(std::vector<Work>& works) {
+void SurfaceCache::SortByPoints(std::vector<Work>& works) {
+  std::stable_sort(works.begin(), works.end(),
+                   [](const Work& a, const Work& b) { return a.points > b.points; });
+}
+
+void SurfaceCache::KeepWhatFits(std::vector<Work>& works, uint64_t& unkept) const {
   // One at least: what is held may be dear, and makes room when more comes.
   const uint64_t fitting = std::max<uint64_t>(1, Room() / BytesPerCell());
   if (works.size() <= fitting) return;
-  unkept_ += works.size() - fitting;
-  std::stable_sort(works.begin(), works.end(),
-                   [](const Work& a, const Work& b) { return a.points > b.points; });
+  unkept += works.size() - fitting;
+  SortByPoints(works);
   works.erase(works.begin() + static_cast<std::ptrdiff_t>(fitting), works.end());
 }
 
 void SurfaceCache::Trim(std::vector<Work>& works, const Thrift& thrift, double& left) {
-  std::stable_sort(works.begin(), works.end(),
-                   [](const Work& a, const Work& b) { return a.points > b.points; });
+  SortByPoints(works);
   double planned = left;
   std::erase_if(works, [&](const Work& work) {
     const CellLights* known = work.node->payload.get();
@@ -205,22 +209,23 @@ void SurfaceCache::BeginAnew() { pinned_ = frame_begin_ = ++clock_; }
 SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop,
                                          const Thrift& thrift) {
   const std::shared_lock building(builders_mutex_);
-  uint64_t certified = 0;
-  std::vector<Work> works = CollectUsed(weight, thrift);
+  Grown grown;
+  std::vector<Work> works = CollectUsed(weight, thrift, grown.unkept);
   const bool is_limited = thrift.price != nullptr && std::isfinite(thrift.most_work);
   double left = thrift.most_work;
   if (is_limited) Trim(works, thrift, left);
-  for (KeepWhatFits(works); !works.empty(); KeepWhatFits(works)) {
+  for (KeepWhatFits(works, grown.unkept); !works.empty(); KeepWhatFits(works, grown.unkept)) {
     if (is_limited) AllowDivisions(works, thrift, left);
     Certify(works, loop, thrift);
-    works = Publish(std::move(works), thrift, certified);
+    works = Publish(std::move(works), thrift, grown.cells);
     for (const Work& child : works) {
       left -= is_limited ? (*thrift.price)(child.object, child.parent) : 0;
     }
   }
   const std::lock_guard evicting(ledger_mutex_);
   Evict();
-  return {certified, is_limited ? thrift.most_work - left : 0};
+  grown.work = is_limited ? thrift.most_work - left : 0;
+  return grown;
 }
 
 Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {

@@ -84,8 +84,9 @@ class SurfaceCache {
     bool ahead = false;
   };
   struct Grown {
-    uint64_t cells = 0;  // certified
-    double work = 0;     // their price
+    uint64_t cells = 0;   // certified
+    double work = 0;      // their price
+    uint64_t unkept = 0;  // cells and trees that were asked for and found no room
   };
   // Certifies and divides the cells that were used since the last call where that pays; `weight` is
   // the number of shading points that one use stands for.
@@ -108,8 +109,6 @@ class SurfaceCache {
   // As BlockLedger::SetPolicy.
   void SetPolicy(std::string_view name);
   Evicted evicted() const { return evicted_.now(); }
-  // Cells and trees that were asked for and found no room, since the scene was loaded.
-  uint64_t unkept() const { return unkept_; }
   // Bytes beside the trees: of what eviction needs to know.
   uint64_t LedgerBytes() const { return costs_.ByteSize() + ledger_bytes_; }
 
@@ -127,17 +126,19 @@ class SurfaceCache {
 
   // Whether a cell with so many points is to be divided, as far as the cache's least number goes.
   bool HasEnough(double points, const CellLights& lights) const {
-    return lights.WantsSmaller() && points >= min_uses_ * lights.Patience();
+    return points >= min_uses_ && lights.WantsSmaller() && points >= min_uses_ * lights.Patience();
   }
   // Whether smaller cells are worth their cost, with what is known of this one.
   bool ShouldDivide(const Work& work, const CellLights& lights, const Thrift& thrift) const;
-  std::vector<Work> CollectUsed(double weight, const Thrift& thrift);
+  std::vector<Work> CollectUsed(double weight, const Thrift& thrift, uint64_t& unkept);
   // Keeps those of the works that most points ask for and that there is room for: what is certified
   // without room to keep it is work for nobody.
-  void KeepWhatFits(std::vector<Work>& works);
+  void KeepWhatFits(std::vector<Work>& works, uint64_t& unkept) const;
   // What is left of the trees' budget, and what a cell takes, as far as is known.
   uint64_t Room() const;
   uint64_t BytesPerCell() const;
+  // What most points ask for first.
+  static void SortByPoints(std::vector<Work>& works);
   // Drops works that cost more than `left`, which is reduced by what the others do.
   static void Trim(std::vector<Work>& works, const Thrift& thrift, double& left);
   // Says which of the works may be divided, for what is left.
@@ -169,7 +170,6 @@ class SurfaceCache {
   TreeStore<SurfaceTree> store_;
   BuildCosts costs_;
   AheadCounters ahead_;
-  std::atomic<uint64_t> unkept_{0};
   // Shared by those who build; who has it alone may change trees as a whole. Taken before the next.
   mutable std::shared_mutex builders_mutex_;
   mutable std::mutex ledger_mutex_;

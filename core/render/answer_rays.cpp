@@ -281,7 +281,7 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     if (IsCancelled()) return;
     SurfaceCache::Thrift thrift;
     thrift.ahead = options_.ahead;
-    const uint64_t surfaces = trees.surfaces.Refine(/*weight=*/1, loop, thrift).cells;
+    const SurfaceCache::Grown surfaces = trees.surfaces.Refine(/*weight=*/1, loop, thrift);
     uint64_t paths = 0, tried_paths = 0;
     const ParallelLoop counted = [&](size_t count, const std::function<void(size_t)>& body) {
       tried_paths += count;
@@ -291,8 +291,9 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
       paths = trees.paths.Refine(options_.limits, samples, std::min(weight, kMostPathUsesOfRay),
                                  counted, options_.ahead);
     }
-    stats_.cells_tried += surfaces + tried_paths;
-    stats_.cells_accepted += surfaces + paths;
+    stats_.cells_tried += surfaces.cells + tried_paths;
+    stats_.cells_accepted += surfaces.cells + paths;
+    stats_.cells_unkept += surfaces.unkept + tried_paths - paths;
   }
 }
 

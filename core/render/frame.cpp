@@ -14,6 +14,7 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   for (size_t v = 0; v < verdicts.size(); ++v) verdicts[v] += o.verdicts[v];
   cells_tried += o.cells_tried;
   cells_accepted += o.cells_accepted;
+  cells_unkept += o.cells_unkept;
   cells_evicted += o.cells_evicted;
   cache_bytes = o.cache_bytes;
   wall_ms += o.wall_ms;

@@ -37,6 +37,7 @@ struct FrameStats {
   std::array<uint64_t, kVerdictCount> verdicts{};  // pixels by verdict
   uint64_t cells_tried = 0;
   uint64_t cells_accepted = 0;
+  uint64_t cells_unkept = 0;  // that found no room; the host's own, which no reply tells
   uint64_t cells_evicted = 0;
   uint64_t cache_bytes = 0;  // after the frame
   double wall_ms = 0;

@@ -277,6 +277,7 @@ double Blocks::Grow(const Growth& growth) {
   const auto grown = GrowTrees(packets_.tracer().scene(), surfaces_, plan_, own, loop);
   frame_.stats.cells_tried += grown.cells;
   frame_.stats.cells_accepted += grown.cells;
+  frame_.stats.cells_unkept += grown.unkept;
   return grown.work;
 }
 

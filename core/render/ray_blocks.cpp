@@ -170,10 +170,11 @@ uint64_t RayBlocks::Grow(const Growth& growth) {
     };
     pool_.ParallelFor(count, unless_cancelled, &stats_.cpu_ms);
   };
-  const uint64_t cells = GrowTrees(scene(), surfaces_, plan_, growth, loop).cells;
-  stats_.cells_tried += cells;
-  stats_.cells_accepted += cells;
-  return cells;
+  const auto grown = GrowTrees(scene(), surfaces_, plan_, growth, loop);
+  stats_.cells_tried += grown.cells;
+  stats_.cells_accepted += grown.cells;
+  stats_.cells_unkept += grown.unkept;
+  return grown.cells;
 }
 
 void RayBlocks::TraceCached() {

@@ -135,7 +135,6 @@ SceneHost::SceneHost(std::shared_ptr<const Scene> scene, const CacheOptions& cac
       surfaces_(tracer_, MemoryShares(cache_options.memory_bytes).surfaces),
       paths_(tracer_, MemoryShares(cache_options.memory_bytes).paths, cache_options.max_cell_depth),
       plan_(scene_->objects.size(), cache_options.always_ask),
-      always_asks_(cache_options.always_ask),
       policy_(cache_options.policy) {
   surfaces_.SetPolicy(policy_);
   paths_.SetPolicy(policy_);
@@ -195,24 +194,23 @@ RenderOptions SceneHost::OptionsFor(const RenderOptions& options) {
   RenderOptions own = options;
   const bool certified = options.mode == Mode::kCached && options.judge == JudgeKind::kCertified;
   // Who records wants to know what would be used.
-  if (certified && !always_asks_ && recorder_ == nullptr && pause_.Take()) {
+  if (certified && !plan_.always() && recorder_ == nullptr && pause_.Take()) {
     own.mode = Mode::kClassical;
   }
   return own;
 }
 
-void SceneHost::EndFrame(const RenderOptions& options, const FrameStats& stats, uint64_t unkept) {
+void SceneHost::EndFrame(const RenderOptions& options, const FrameStats& stats) {
   if (options.mode != Mode::kCached || options.judge != JudgeKind::kCertified) return;
-  CacheYield yield{.rays = stats.pixels, .unkept = surfaces_.unkept() - unkept};
   // Rays that need no search anyway look as if they were known: no cell serves many more than it
   // was divided for.
   const double served =
       kMinSurfaceUses * static_cast<double>(surfaces_.CellCount() + paths_.CellCount());
-  yield.known =
-      std::min(stats.interpolated + stats.replayed + stats.residual, static_cast<uint64_t>(served));
-  yield.tried = stats.cells_tried + yield.unkept;
-  yield.unkept += stats.cells_tried - stats.cells_accepted;
-  pause_.Note(yield);
+  const uint64_t known = stats.interpolated + stats.replayed + stats.residual;
+  pause_.Note({.rays = stats.pixels,
+               .known = std::min(known, static_cast<uint64_t>(served)),
+               .tried = stats.cells_accepted + stats.cells_unkept,
+               .unkept = stats.cells_unkept});
   FrameMark mark;
   if (recorder_ != nullptr && !options.ahead) {
     mark = {recorder_, recorder_->BeginFrame(), HashOfText(scene_->version)};
@@ -304,7 +302,6 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& asked, WorkerPo
   const Stopwatch stopwatch;
   FrameRequest request = asked;
   request.options = OptionsFor(asked.options);
-  const uint64_t unkept = surfaces_.unkept();
   Frame frame = EmptyFrame(*scene_, request);
   absl::Status status;
   if (GoesByPackets(request.options)) {
@@ -316,7 +313,7 @@ absl::StatusOr<Frame> SceneHost::RenderFrame(const FrameRequest& asked, WorkerPo
                            progress, frame);
   }
   if (!status.ok()) return status;
-  EndFrame(request.options, frame.stats, unkept);
+  EndFrame(request.options, frame.stats);
   frame.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   if (request.options.ahead) {
@@ -338,7 +335,6 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
   }
   const Stopwatch stopwatch;
   const RenderOptions options = OptionsFor(asked);
-  const uint64_t unkept = surfaces_.unkept();
   RayBatch batch;
   std::vector<Ray> unit_rays;
   if (auto s = MakeUnitRays(rays, pool, unit_rays, &batch.stats.cpu_ms); !s.ok()) return s;
@@ -354,7 +350,7 @@ absl::StatusOr<RayBatch> SceneHost::TraceRays(const std::vector<Ray>& rays,
                         nullptr, batch.answers, batch.stats);
   }
   if (!status.ok()) return status;
-  EndFrame(options, batch.stats, unkept);
+  EndFrame(options, batch.stats);
   batch.stats.wall_ms = stopwatch.Ms();
   std::lock_guard lock(totals_mutex_);
   ++totals_.ray_batches;

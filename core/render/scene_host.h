@@ -127,8 +127,8 @@ class SceneHost {
  private:
   // What a request gets: no cache while that pauses.
   RenderOptions OptionsFor(const RenderOptions& options);
-  // After a frame or a batch of rays; `unkept` is what surfaces_ said before.
-  void EndFrame(const RenderOptions& options, const FrameStats& stats, uint64_t unkept);
+  // After a frame or a batch of rays.
+  void EndFrame(const RenderOptions& options, const FrameStats& stats);
   // By packets, or ray by ray.
   bool GoesByPackets(const RenderOptions& options) const;
   absl::Status RenderRays(const FrameRequest& request, WorkerPool& pool, const CancelToken* cancel,
@@ -148,7 +148,6 @@ class SceneHost {
   PathCache paths_;
   FramePlan plan_;
   CachePause pause_;
-  const bool always_asks_;
   TraceRecorder* recorder_ = nullptr;
   mutable std::mutex policy_mutex_;
   std::string policy_;  // guarded by policy_mutex_
