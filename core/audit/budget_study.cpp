@@ -1,6 +1,6 @@
 #include "core/audit/budget_study.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace linetree {
 
@@ -30,17 +30,7 @@ absl::StatusOr<BudgetStudy> StudyBudget(const std::shared_ptr<const Scene>& scen
   });
   if (!small.ok()) return small.status();
   study.speed = *std::move(small);
-  std::vector<double> ratios;
-  double classical = 0, cached = 0;
-  for (const FrameSpeed::Turn& turn : study.speed.turns) {
-    ratios.push_back(turn.ratio);
-    classical += turn.classical.median;
-    cached += turn.cached.median;
-  }
-  const SpeedSpread spread = SpreadOf(std::move(ratios));
-  study.average_ratio = classical / cached;
-  study.median_ratio = spread.median;
-  study.least_ratio = spread.least;
+  static_cast<FlightRatios&>(study) = RatiosOf(study.speed.turns);
   return study;
 }
 

@@ -15,12 +15,10 @@ struct BudgetStudyOptions {
   FrameSpeedOptions frames;  // its memory is for the working set to be measured
 };
 
-struct BudgetStudy {
+// Each frame's times are the medians of the repeats.
+struct BudgetStudy : FlightRatios {
   uint64_t working_set_bytes = 0;  // that a large cache holds after the last view
   uint64_t memory_bytes = 0;       // the share of it
-  // Time of a classical frame / of a cached one, of the medians of the repeats: of all frames
-  // together, of the middle one and of the worst one.
-  double average_ratio = 0, median_ratio = 0, least_ratio = 0;
   FrameSpeed speed;
 };
 

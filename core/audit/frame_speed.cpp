@@ -94,6 +94,18 @@ class FrameRace {
 
 }  // namespace
 
+FlightRatios RatiosOf(std::span<const FrameSpeed::Turn> turns) {
+  std::vector<double> ratios;
+  double classical = 0, cached = 0;
+  for (const FrameSpeed::Turn& turn : turns) {
+    ratios.push_back(turn.ratio);
+    classical += turn.classical.median;
+    cached += turn.cached.median;
+  }
+  const SpeedSpread spread = SpreadOf(std::move(ratios));
+  return {spread.median, spread.least, classical / cached};
+}
+
 void AddErrors(const Frame& cached, const Frame& classical, double floor, double epsilon,
                FrameSpeed& speed) {
   std::vector<double> errors(cached.object.size());

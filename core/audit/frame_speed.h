@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -44,6 +45,13 @@ struct FrameSpeed {
   double largest_error = 0, p999_error = 0;
   uint64_t pixels = 0, beyond = 0;
 };
+
+// Classical by cached time of several frames: the median and the least of their own ratios, and
+// that of all frames together.
+struct FlightRatios {
+  double median_ratio = 0, least_ratio = 0, average_ratio = 0;
+};
+FlightRatios RatiosOf(std::span<const FrameSpeed::Turn> turns);  // of at least one
 
 // Adds the errors of one frame; epsilon: beyond what a pixel counts as beyond.
 void AddErrors(const Frame& cached, const Frame& classical, double floor, double epsilon,

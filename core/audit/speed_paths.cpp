@@ -1,6 +1,5 @@
 #include "core/audit/speed_paths.h"
 
-#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -14,28 +13,15 @@ using Turns = std::span<const FrameSpeed::Turn>;
 
 bool IsStill(SpeedPath path) { return path == SpeedPath::kCold || path == SpeedPath::kWarm; }
 
-double LeastRatio(Turns turns) {
-  double least = turns.front().ratio;
-  for (const FrameSpeed::Turn& turn : turns) least = std::min(least, turn.ratio);
-  return least;
-}
-
 PathSpeed SpeedOf(SpeedPath path, Turns turns) {
-  std::vector<double> ratio, classical, cached;
-  double classical_sum = 0, cached_sum = 0;
+  std::vector<double> classical, cached;
   for (const FrameSpeed::Turn& turn : turns) {
-    ratio.push_back(turn.ratio);
     classical.push_back(turn.classical.median);
     cached.push_back(turn.cached.median);
-    classical_sum += turn.classical.median;
-    cached_sum += turn.cached.median;
   }
-  PathSpeed speed;
+  PathSpeed speed{RatiosOf(turns)};
   speed.path = path;
   speed.frames = turns.size();
-  speed.median_ratio = SpreadOf(std::move(ratio)).median;
-  speed.least_ratio = LeastRatio(turns);
-  speed.average_ratio = classical_sum / cached_sum;
   speed.classical = SpreadOf(std::move(classical));
   speed.cached = SpreadOf(std::move(cached));
   return speed;
@@ -56,7 +42,7 @@ PathSpeed SpeedOf(SpeedPath path, const FrameSpeed& flight) {
     speed = SpeedOfOne(path, turns.front());
   } else if (path == SpeedPath::kWarm) {
     speed = SpeedOfOne(path, turns.back());
-    if (turns.size() > 1) speed.least_ratio = LeastRatio(turns.subspan(1));
+    if (turns.size() > 1) speed.least_ratio = RatiosOf(turns.subspan(1)).least_ratio;
   } else {
     speed = SpeedOf(path, turns);
   }

@@ -46,12 +46,9 @@ struct SpeedFlights {
 };
 
 // What frames along a path are compared to classical ones of the same views.
-struct PathSpeed {
+struct PathSpeed : FlightRatios {  // each frame's ratio is the median of its repeats
   SpeedPath path = SpeedPath::kCold;
-  size_t frames = 1;  // that count
-  // Each frame's ratio classical / cached is the median of the repeats of that very frame; of these
-  // the median and the least, and classical by cached time of all frames together.
-  double median_ratio = 0, least_ratio = 0, average_ratio = 0;
+  size_t frames = 1;              // that count
   SpeedSpread classical, cached;  // ns per pixel, of the frames' medians
   FrameSpeed flight;              // the whole one; a cold and a warm frame may share one
 };
