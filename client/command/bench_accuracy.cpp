@@ -133,9 +133,8 @@ void AddBenchAccuracy(CLI::App& bench, Commands& commands) {
       ->capture_default_str();
   AddJudgeFlag(*app, flags->judge);
   AddSizeFlags(*app, flags->size);
-  app->add_option("--threads", flags->connection.threads, "0: all hardware threads")
-      ->capture_default_str();
-  app->add_option("--json", flags->json, "Also write the table as JSON to this file");
+  AddThreadsFlag(*app, flags->connection.threads);
+  AddJsonFlag(*app, flags->json, "the table");
   AddQuietFlag(*app, flags->quiet);
   app->footer("Run it from the project's folder, where scenes/ is.");
   commands.push_back({app, [flags] { return BenchAccuracy(*flags); }});

@@ -91,11 +91,8 @@ void AddAuditFlags(CLI::App& app, BenchAuditFlags& flags) {
       ->transform(CLI::CheckedTransformer(judges))
       ->type_name("JUDGE")
       ->default_str("certified");
-  app.add_option("--threads", flags.threads, "0: all hardware threads")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app.add_option("--json", flags.json, "Also write the report as JSON")->type_name("FILE");
+  AddThreadsFlag(app, flags.threads);
+  AddJsonFlag(app, flags.json, "the report");
   AddQuietFlag(app, flags.quiet);
 }
 

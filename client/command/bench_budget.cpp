@@ -1,6 +1,5 @@
 // linetree bench budget: a cache that is far too small, against none.
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "client/command/budget_run.h"
@@ -15,8 +14,7 @@ namespace linetree {
 namespace {
 
 struct BenchBudgetFlags {
-  BudgetPlan plan{.corpus = {.scenes = {"scenes/room.textproto", "scenes/spd/balls_3.nff",
-                                        "scenes/spd/tree_8.nff", "scenes/many_lights.textproto"},
+  BudgetPlan plan{.corpus = {.scenes = CorpusScenes("scenes"),
                              .patterns = AllFlightPatterns(),
                              .frames = 40,
                              .size = {256, 256},
@@ -24,17 +22,6 @@ struct BenchBudgetFlags {
   std::string json;
   bool quiet = false;
 };
-
-void PrintRows(const nlohmann::json& rows) {
-  const ReportTable report = BudgetTable(rows);
-  std::vector<TableColumn> columns;
-  for (const std::string& title : report.titles) {
-    columns.push_back({title, columns.size() < 3 ? Align::kLeft : Align::kRight});
-  }
-  Table table(std::move(columns));
-  for (const std::vector<std::string>& row : report.rows) table.AddRow(row);
-  std::cout << "Time of cached frames by classical ones:\n" << table.ToString();
-}
 
 absl::StatusOr<int> BenchBudget(const BenchBudgetFlags& flags) {
   if (auto s = CheckFolders({flags.json}); !s.ok()) return s;
@@ -44,7 +31,9 @@ absl::StatusOr<int> BenchBudget(const BenchBudgetFlags& flags) {
     rows = RunBudgets(flags.plan, [&bar](double share) { bar.Show(share); });
   }
   if (!rows.ok()) return rows.status();
-  PrintRows(*rows);
+  const ReportTable report = BudgetTable(*rows);
+  std::cout << "Time of cached frames by classical ones:\n"
+            << TextTable(report.titles, report.rows, 3);
   if (!flags.json.empty()) {
     if (auto s = WriteJson(*rows, flags.json); !s.ok()) return s;
   }
@@ -58,10 +47,9 @@ absl::StatusOr<int> BenchBudget(const BenchBudgetFlags& flags) {
 
 void AddBudgetFlags(CLI::App& app, BenchBudgetFlags& flags) {
   AddCorpusFlags(app, flags.plan.corpus);
-  const std::map<std::string, Lanes> lanes = {{"simd", Lanes::kSimd}, {"scalar", Lanes::kScalar}};
   app.add_option("--lanes", flags.plan.lanes, "Ray by ray or by packets; both by default")
       ->type_name("LANES")
-      ->transform(CLI::CheckedTransformer(lanes, CLI::ignore_case))
+      ->transform(CLI::CheckedTransformer(LanesByName(), CLI::ignore_case))
       ->default_str("");
   app.add_option("--share", flags.plan.share, "Of the working set that the cache may hold")
       ->type_name("S")
@@ -71,7 +59,7 @@ void AddBudgetFlags(CLI::App& app, BenchBudgetFlags& flags) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");
+  AddJsonFlag(app, flags.json, "the figures");
   AddQuietFlag(app, flags.quiet);
 }
 

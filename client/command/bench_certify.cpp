@@ -190,8 +190,8 @@ void AddBenchCertify(CLI::App& bench, Commands& commands) {
                   "Surface cells of fewer pixels are not divided")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  app->add_option("--threads", flags->threads, "0: all hardware threads")->capture_default_str();
-  app->add_option("--json", flags->json, "Also write the tables as JSON to this file");
+  AddThreadsFlag(*app, flags->threads);
+  AddJsonFlag(*app, flags->json, "the tables");
   AddQuietFlag(*app, flags->quiet);
   app->footer(
       "Run it from the project's folder, where scenes/ is. Ends with status 1 when a promise was "

@@ -110,11 +110,8 @@ void AddEditFlags(CLI::App& app, BenchEditFlags& flags) {
   app.add_option("--seed", flags.study.seed, "Of what moves, and where to")
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--threads", flags.threads, "0: all hardware threads")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");
+  AddThreadsFlag(app, flags.threads);
+  AddJsonFlag(app, flags.json, "the figures");
   AddQuietFlag(app, flags.quiet);
 }
 

@@ -112,7 +112,7 @@ void AddLookupsFlags(CLI::App& app, BenchLookupsFlags& flags) {
       ->type_name("E")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");
+  AddJsonFlag(app, flags.json, "the figures");
   AddQuietFlag(app, flags.quiet);
 }
 

@@ -77,15 +77,14 @@ void AddBenchPaper(CLI::App& bench, Commands& commands) {
       ->capture_default_str();
   app->add_option("--width", flags->options.width, "Pixels")->capture_default_str();
   app->add_option("--height", flags->options.height, "Pixels")->capture_default_str();
-  app->add_option("--threads", flags->options.threads, "0: all hardware threads")
-      ->capture_default_str();
+  AddThreadsFlag(*app, flags->options.threads);
   app->add_option("--cell-depth", flags->options.cache.max_cell_depth, "Depth of the deepest cells")
       ->check(CLI::Range(0, kMaxCellDepth))
       ->capture_default_str();
   app->add_option("--min-cell-rays", flags->options.cache.min_cell_rays,
                   "Build a cell for at least this many rays of a frame")
       ->capture_default_str();
-  app->add_option("--json", flags->json, "Also write the tables as JSON to this file");
+  AddJsonFlag(*app, flags->json, "the tables");
   AddQuietFlag(*app, flags->quiet);
   commands.push_back({app, [flags] { return BenchPaper(*flags); }});
 }

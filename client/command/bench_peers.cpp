@@ -187,9 +187,7 @@ void AddFlags(CLI::App& app, BenchPeersFlags& flags) {
       ->type_name("T")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  app.add_option("--json", flags.json, "Also write the tables as JSON to this file")
-      ->type_name("FILE")
-      ->group("Output");
+  AddJsonFlag(app, flags.json, "the tables");
   app.add_option("--pictures", flags.pictures, "Also write SCENE_PEER.png into this folder")
       ->type_name("DIR")
       ->group("Output");

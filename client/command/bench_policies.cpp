@@ -20,9 +20,7 @@ namespace linetree {
 namespace {
 
 struct BenchPoliciesFlags {
-  PolicyCorpus corpus{.scenes = {"scenes/room.textproto", "scenes/spd/balls_3.nff",
-                                 "scenes/spd/tree_8.nff", "scenes/many_lights.textproto"},
-                      .patterns = AllFlightPatterns()};
+  PolicyCorpus corpus{.scenes = CorpusScenes("scenes"), .patterns = AllFlightPatterns()};
   std::string traces;  // folder
   std::string json, svg;
   bool quiet = false;
@@ -98,13 +96,11 @@ absl::StatusOr<int> BenchPolicies(const BenchPoliciesFlags& flags) {
     if (!flags.traces.empty()) {
       if (auto s = SaveTraces(*traces, flags.traces); !s.ok()) return s;
     }
-    auto policies = ParsePolicies("all");
-    policies->insert(policies->end(), kToldPolicies.begin(), kToldPolicies.end());
     const std::vector<PolicyBudget> budgets = {*ParseBudget("25%"), *ParseBudget("50%"),
                                                *ParseBudget("75%")};
     double done = 0;
     for (const auto& [name, trace] : *traces) {
-      auto more = SimulateAll(name, trace, *policies, budgets, false, [](double) {});
+      auto more = SimulateAll(name, trace, ContestPolicies(), budgets, false, [](double) {});
       if (!more.ok()) return more.status();
       rows.insert(rows.end(), more->begin(), more->end());
       bar.Show(0.8 + 0.2 * ++done / static_cast<double>(traces->size()));
@@ -126,7 +122,7 @@ void AddPoliciesFlags(CLI::App& app, BenchPoliciesFlags& flags) {
   AddCorpusFlags(app, flags.corpus);
   app.add_option("--traces", flags.traces, "Also write the traces into this folder")
       ->type_name("FOLDER");
-  app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");
+  AddJsonFlag(app, flags.json, "the figures");
   app.add_option("--svg", flags.svg, "Also plot hits and rebuild cost over the budget")
       ->type_name("FILE")
       ->check(HasExtension({".svg"}));

@@ -179,7 +179,7 @@ void AddBenchRays(CLI::App& bench, Commands& commands) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app->add_option("--json", flags->json, "Also write the table as JSON to this file");
+  AddJsonFlag(*app, flags->json, "the table");
   AddQuietFlag(*app, flags->quiet);
   app->footer(
       "Coherent: the eye rays of a picture of that size, row by row. Incoherent: as many rays from "

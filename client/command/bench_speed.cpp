@@ -266,7 +266,7 @@ void AddMeasureFlags(CLI::App& app, BenchSpeedFlags& flags) {
   app.add_flag("--explain", flags.explain,
                "Also print what was left out, for each scene and object, and why, after the last "
                "path's last frame");
-  app.add_option("--json", flags.json, "Also write everything as JSON to this file");
+  AddJsonFlag(app, flags.json, "everything");
   AddQuietFlag(app, flags.quiet);
 }
 

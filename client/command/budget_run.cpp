@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/command/session.h"
 #include "client/command/table.h"
 
 namespace linetree {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string LanesName(Lanes lanes) { return lanes == Lanes::kSimd ? "simd" : "scalar"; }
 
 Json RowOf(const std::string& scene, FlightPattern pattern, Lanes lanes, const BudgetStudy& study) {
   return {{"scene", scene},
@@ -30,20 +26,6 @@ Json RowOf(const std::string& scene, FlightPattern pattern, Lanes lanes, const B
           {"largest_error", study.speed.largest_error}};
 }
 
-// Every scene's file with its first camera, checked before anything is measured.
-absl::StatusOr<std::vector<SceneFile>> ReadScenes(const std::vector<std::string>& paths) {
-  std::vector<SceneFile> files;
-  for (const std::string& path : paths) {
-    auto file = ReadSceneFileChecked(path);
-    if (!file.ok()) return file.status();
-    if (file->scene->FindCamera("") == nullptr) {
-      return absl::InvalidArgumentError(absl::StrCat(path, ": expected a scene with a camera"));
-    }
-    files.push_back(*std::move(file));
-  }
-  return files;
-}
-
 std::string ByNone(double classical_by_cached) {
   return absl::StrFormat("%.3f", 1 / classical_by_cached);
 }
@@ -52,7 +34,7 @@ std::string ByNone(double classical_by_cached) {
 
 absl::StatusOr<Json> RunBudgets(const BudgetPlan& plan, const Progress& progress) {
   const PolicyCorpus& corpus = plan.corpus;
-  const auto files = ReadScenes(corpus.scenes);
+  const auto files = ReadCorpusScenes(corpus);
   if (!files.ok()) return files.status();
   WorkerPool pool(corpus.threads);
   BudgetStudyOptions options{.share = plan.share, .frames = {}};

@@ -49,7 +49,7 @@ void AddCachePolicy(CLI::App& cache, Commands& commands) {
   app->add_option("--scene", flags->scene, "Name of one of the server's scenes")
       ->type_name("NAME")
       ->required();
-  app->add_option("--json", flags->json, "Also write the answer as JSON")->type_name("FILE");
+  AddJsonFlag(*app, flags->json, "the answer");
   app->footer(
       "Frames that are under way go on; what is cached stays. 'linetree cache sim --help' lists "
       "the "

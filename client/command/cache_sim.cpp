@@ -101,7 +101,7 @@ void AddSimFlags(CLI::App& app, CacheSimFlags& flags) {
       ->force_callback();
   app.add_flag("--ignore-size", flags.ignores_size,
                "Count every item as one; budgets are numbers of items");
-  app.add_option("--json", flags.json, "Also write the figures as JSON")->type_name("FILE");
+  AddJsonFlag(app, flags.json, "the figures");
   app.add_option("--svg", flags.svg, "Also plot hits and rebuild cost over the budget")
       ->type_name("FILE")
       ->check(HasExtension({".svg"}));

@@ -1,6 +1,6 @@
 #include "client/command/flags.h"
 
-#include <map>
+#include <algorithm>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -181,12 +181,24 @@ void AddJudgeFlag(CLI::App& app, JudgeKind& judge) {
       ->group("Rendering");
 }
 
+const std::map<std::string, Lanes>& LanesByName() {
+  static const auto* const all =
+      new std::map<std::string, Lanes>{{"simd", Lanes::kSimd}, {"scalar", Lanes::kScalar}};
+  return *all;
+}
+
+std::string LanesName(Lanes lanes) {
+  const auto& all = LanesByName();
+  return std::find_if(all.begin(), all.end(),
+                      [&](const auto& named) { return named.second == lanes; })
+      ->first;
+}
+
 void AddLanesFlag(CLI::App& app, Lanes& lanes) {
-  const std::map<std::string, Lanes> all = {{"simd", Lanes::kSimd}, {"scalar", Lanes::kScalar}};
   app.add_option("--lanes", lanes,
                  "How rays are traced. scalar: one by one, in double;\n"
                  "simd: sixteen rays at a time, radiance in float, many times as fast")
-      ->transform(CLI::CheckedTransformer(all))
+      ->transform(CLI::CheckedTransformer(LanesByName()))
       ->type_name("LANES")
       ->default_str("scalar")
       ->group("Rendering");
@@ -304,6 +316,19 @@ void AddStatsFlag(CLI::App& app, std::string& stats) {
 
 void AddQuietFlag(CLI::App& app, bool& quiet) {
   app.add_flag("--quiet,-q", quiet, "No progress and no table")->group("Output");
+}
+
+void AddJsonFlag(CLI::App& app, std::string& file, const std::string& what) {
+  app.add_option("--json", file, absl::StrCat("Also write ", what, " as JSON"))
+      ->type_name("FILE")
+      ->group("Output");
+}
+
+void AddThreadsFlag(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "0: all hardware threads")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
 }
 
 void AddOutputFlags(CLI::App& app, OutputFlags& flags) {

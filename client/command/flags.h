@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,6 +62,9 @@ absl::StatusOr<Camera> ResolveCamera(const v1::SceneInfo& scene, const ViewFlags
 void AddOptionsFlags(CLI::App& app, RenderOptions& options);
 void AddJudgeFlag(CLI::App& app, JudgeKind& judge);
 void AddLanesFlag(CLI::App& app, Lanes& lanes);
+// What --lanes calls them.
+const std::map<std::string, Lanes>& LanesByName();
+std::string LanesName(Lanes lanes);
 void AddLimitsFlags(CLI::App& app, PathLimits& limits);
 
 // --samples, --sampling and --sample-seed.
@@ -82,6 +86,10 @@ struct OutputFlags {
 void AddOutputFlags(CLI::App& app, OutputFlags& flags);
 void AddStatsFlag(CLI::App& app, std::string& stats);
 void AddQuietFlag(CLI::App& app, bool& quiet);
+// --json FILE: "Also write WHAT as JSON".
+void AddJsonFlag(CLI::App& app, std::string& file, const std::string& what);
+// --threads of a command that works in this process.
+void AddThreadsFlag(CLI::App& app, int& threads);
 
 // The meaning of the colours of --layer verdict and --layer source, for --help.
 std::string LegendText();

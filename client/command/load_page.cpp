@@ -57,16 +57,6 @@ std::vector<Row> SumRows(const LoadFigures& figures) {
                         " evicted, ", Bytes(figures.cache_bytes), " at the end")}};
 }
 
-std::string TextTable(const Row& titles, const std::vector<Row>& rows) {
-  std::vector<TableColumn> columns;
-  for (const std::string& title : titles) {
-    columns.push_back({title, columns.empty() ? Align::kLeft : Align::kRight});
-  }
-  Table table(std::move(columns));
-  for (const Row& row : rows) table.AddRow(row);
-  return table.ToString();
-}
-
 std::string PhaseText(const LoadFigures& figures) {
   std::string text = absl::StrCat(figures.phase, "\n");
   for (const Row& row : SumRows(figures))

@@ -39,9 +39,9 @@ struct LoadPlan {
 };
 
 // One client for each piece; they may be the same object. With `light`, which should be a client of
-// its own, light calls are timed meanwhile. Phases "warm-up", if there is one, and
-// "measured". Refusals for want of room are samples, and in a closed loop the client comes back
-// when the server has said; all other errors end the test.
+// its own, light calls are timed meanwhile. Phases "warm-up", if there is one, and "measured".
+// Refusals for want of room are samples, and in a closed loop the client comes back when the server
+// has said; all other errors end the test.
 absl::StatusOr<std::vector<LoadPhase>> RunLoad(const LoadPlan& plan,
                                                const std::vector<Client*>& clients,
                                                const std::function<void(double)>& progress,

@@ -11,6 +11,12 @@ constexpr char kLru[] = "lru";
 
 }  // namespace
 
+std::vector<std::string> ContestPolicies() {
+  std::vector<std::string> policies = *ParsePolicies("all");
+  policies.insert(policies.end(), {"reuse@2", "reuse@8", "reuse@32"});
+  return policies;
+}
+
 std::vector<PolicyContest> ContestsOf(const std::vector<PolicyRow>& rows) {
   std::map<std::pair<std::string, std::string>, PolicyContest> all;
   for (const PolicyRow& row : rows) {

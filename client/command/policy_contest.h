@@ -1,7 +1,6 @@
 // Which policy does best: contests under one budget on one trace, and sums over all traces.
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,8 +13,9 @@ namespace linetree {
 inline constexpr double kMostRegret = 1.15;
 inline constexpr double kMostByLru = 1.05;
 
-// What ours would reach if it knew where viewpoints are heading: the roofline of any prediction.
-inline constexpr std::array<const char*, 3> kToldPolicies = {"reuse@2", "reuse@8", "reuse@32"};
+// All policies, and ours as it would be if it knew where viewpoints are heading: the roofline of
+// any prediction.
+std::vector<std::string> ContestPolicies();
 
 // Of one trace under one budget.
 struct PolicyContest {

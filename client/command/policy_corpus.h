@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/command/flags.h"
+#include "client/command/session.h"
 #include "core/audit/flight_corpus.h"
 
 namespace linetree {
@@ -27,6 +28,12 @@ struct NamedTrace {
 };
 
 std::vector<FlightPattern> AllFlightPatterns();
+
+// The files of the scenes that policies and budgets are compared on, in the folder of all scenes.
+std::vector<std::string> CorpusScenes(const std::string& folder);
+
+// The corpus' scenes, each of which has a camera: INVALID_ARGUMENT for one that has none.
+absl::StatusOr<std::vector<SceneFile>> ReadCorpusScenes(const PolicyCorpus& corpus);
 
 // `progress` gets shares in [0, 1].
 absl::StatusOr<std::vector<NamedTrace>> RecordCorpus(const PolicyCorpus& corpus,

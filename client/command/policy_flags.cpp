@@ -37,10 +37,7 @@ void AddCorpusFlags(CLI::App& app, PolicyCorpus& corpus) {
   app.add_option("--seed", corpus.seed, "Of where flights lead")
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--threads", corpus.threads, "0: all hardware threads")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  AddThreadsFlag(app, corpus.threads);
 }
 
 }  // namespace linetree

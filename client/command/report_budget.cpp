@@ -9,22 +9,17 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kScenes[] = {"room.textproto", "spd/balls_3.nff", "spd/tree_8.nff",
-                                   "many_lights.textproto"};
-
 }  // namespace
 
 ReportSection BudgetSection(const ReportOptions& options) {
   BudgetPlan plan;
+  plan.corpus.scenes = CorpusScenes(options.scenes_dir);
   plan.corpus.patterns = AllFlightPatterns();
   plan.corpus.frames = options.quick ? 8 : 40;
   plan.corpus.size.width = plan.corpus.size.height = options.quick ? 64 : 256;
   plan.corpus.threads = 1;
   plan.repeats = options.quick ? 1 : 3;
-  for (const char* scene : kScenes) {
-    plan.corpus.scenes.push_back(absl::StrCat(options.scenes_dir, "/", scene));
-    if (options.quick) break;
-  }
+  if (options.quick) plan.corpus.scenes.resize(1);
   ReportSection section{.id = "budget", .title = "A cache that is far too small"};
   section.text = absl::StrCat(
       "A flight with a large cache tells the working set; then frames of a cache that may hold ",

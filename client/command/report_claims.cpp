@@ -21,9 +21,9 @@ using Json = nlohmann::json;
 
 std::string Number(const Json& value) { return absl::StrFormat("%.3g", value.get<double>()); }
 
-absl::StatusOr<Json> RunFrames(const std::vector<std::string>& files,
-                               const FrameStudyOptions& options, int threads,
-                               const Progress& progress) {
+absl::StatusOr<Json> RunCertify(const std::vector<std::string>& files,
+                                const FrameStudyOptions& options, int threads,
+                                const Progress& progress) {
   WorkerPool pool(threads);
   CertifyReport report;
   for (size_t i = 0; i < files.size(); ++i) {
@@ -41,7 +41,7 @@ absl::StatusOr<Json> RunFrames(const std::vector<std::string>& files,
 }
 
 // Of CertifyJson.
-std::vector<ReportTable> FramesTables(const Json& result) {
+std::vector<ReportTable> CertifyTables(const Json& result) {
   ReportTable table{{"scene", "epsilon", "pixels", "unequal", "beyond",
                      "largest error, of what is allowed", "interpolated", "searches, path",
                      "searches, warm"}};
@@ -56,7 +56,7 @@ std::vector<ReportTable> FramesTables(const Json& result) {
   return {table};
 }
 
-std::vector<ReportGoal> FramesGoals(const Json& result) {
+std::vector<ReportGoal> CertifyGoals(const Json& result) {
   uint64_t beyond = 0, unequal = 0, pixels = 0;
   for (const Json& row : result.at("frames")) {
     pixels += row.at("pixels").get<uint64_t>();
@@ -177,11 +177,11 @@ ReportSection CertifySection(const ReportOptions& options) {
     }
   }
   section.run = [files, study, threads = options.threads](const Progress& progress) {
-    return files.ok() ? RunFrames(*files, study, threads, progress)
+    return files.ok() ? RunCertify(*files, study, threads, progress)
                       : absl::StatusOr<Json>(files.status());
   };
-  section.tables = FramesTables;
-  section.goals = FramesGoals;
+  section.tables = CertifyTables;
+  section.goals = CertifyGoals;
   return section;
 }
 

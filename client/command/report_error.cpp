@@ -40,8 +40,8 @@ Json RowJson(const ErrorSweepRow& row) {
           {"warm", ErrorJson(row.warm)}};
 }
 
-absl::StatusOr<Json> Run(const std::vector<std::string>& files, const ErrorSweepOptions& sweep,
-                         const Progress& progress) {
+absl::StatusOr<Json> RunErrors(const std::vector<std::string>& files,
+                               const ErrorSweepOptions& sweep, const Progress& progress) {
   Json scenes = Json::array();
   for (size_t i = 0; i < files.size(); ++i) {
     const absl::StatusOr<SceneFile> file = ReadSceneFileChecked(files[i]);
@@ -63,7 +63,7 @@ absl::StatusOr<Json> Run(const std::vector<std::string>& files, const ErrorSweep
 
 using Value = double (*)(const Json& row);
 
-PlotSeries SeriesOf(const std::string& name, const Json& rows, Value x, Value y) {
+PlotSeries ErrorSeries(const std::string& name, const Json& rows, Value x, Value y) {
   PlotSeries series{name, {}};
   for (const Json& row : rows) series.points.emplace_back(x(row), y(row));
   return series;
@@ -81,7 +81,7 @@ uint64_t Beyond(const Json& row) {
   return row.at("cold").at("beyond").get<uint64_t>() + row.at("warm").at("beyond").get<uint64_t>();
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> ErrorPlots(const Json& result) {
   const PlotAxis epsilon{.label = "epsilon", .min = 0, .max = 1, .bands = {kPaperEpsilons}};
   const PlotAxis gain{
       .label = "classical / warm", .logarithmic = true, .bands = {{1, 1, "as fast as classical"}}};
@@ -92,26 +92,27 @@ std::vector<Plot> Plots(const Json& result) {
     const std::string name = scene.at("scene");
     const Json& rows = scene.at("rows");
     if (std::find(kShown.begin(), kShown.end(), name) != kShown.end()) {
-      plots[0].series.push_back(SeriesOf(name, rows, Epsilon, WarmGain));
-      plots[1].series.push_back(SeriesOf(name, rows, MaxError, WarmGain));
+      plots[0].series.push_back(ErrorSeries(name, rows, Epsilon, WarmGain));
+      plots[1].series.push_back(ErrorSeries(name, rows, MaxError, WarmGain));
     }
-    plots.push_back({name + ": time over epsilon",
-                     epsilon,
-                     {.label = "ms"},
-                     {SeriesOf("cold", rows, Epsilon, Cold), SeriesOf("warm", rows, Epsilon, Warm),
-                      SeriesOf("classical", rows, Epsilon, Classical)}});
+    plots.push_back(
+        {name + ": time over epsilon",
+         epsilon,
+         {.label = "ms"},
+         {ErrorSeries("cold", rows, Epsilon, Cold), ErrorSeries("warm", rows, Epsilon, Warm),
+          ErrorSeries("classical", rows, Epsilon, Classical)}});
     plots.push_back({name + ": error of warm frames over epsilon",
                      epsilon,
                      {.label = "relative error", .logarithmic = true},
-                     {SeriesOf("largest", rows, Epsilon, MaxError),
-                      SeriesOf("99.9 percentile", rows, Epsilon, P999Error),
-                      SeriesOf("mean", rows, Epsilon, MeanError),
-                      SeriesOf("promised", rows, Epsilon, Epsilon)}});
+                     {ErrorSeries("largest", rows, Epsilon, MaxError),
+                      ErrorSeries("99.9 percentile", rows, Epsilon, P999Error),
+                      ErrorSeries("mean", rows, Epsilon, MeanError),
+                      ErrorSeries("promised", rows, Epsilon, Epsilon)}});
   }
   return plots;
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> ErrorTables(const Json& result) {
   ReportTable table{{"scene", "epsilon", "classical ms", "cold ms", "warm ms", "hit rate, warm",
                      "largest error", "beyond"}};
   for (const Json& scene : result.at("scenes")) {
@@ -126,7 +127,7 @@ std::vector<ReportTable> Tables(const Json& result) {
   return {table};
 }
 
-std::vector<ReportGoal> Goals(const Json& result) {
+std::vector<ReportGoal> ErrorGoals(const Json& result) {
   uint64_t beyond = 0, pixels = 0;
   for (const Json& scene : result.at("scenes")) {
     for (const Json& row : scene.at("rows")) {
@@ -164,11 +165,11 @@ ReportSection ErrorSection(const ReportOptions& options) {
   section.parameters = {
       {"scenes", scenes}, {"side", side}, {"epsilons", sweep.epsilons}, {"repeats", sweep.repeats}};
   section.run = [files, sweep, status = found.status()](const Progress& progress) {
-    return status.ok() ? Run(files, sweep, progress) : absl::StatusOr<Json>(status);
+    return status.ok() ? RunErrors(files, sweep, progress) : absl::StatusOr<Json>(status);
   };
-  section.plots = Plots;
-  section.tables = Tables;
-  section.goals = Goals;
+  section.plots = ErrorPlots;
+  section.tables = ErrorTables;
+  section.goals = ErrorGoals;
   return section;
 }
 

@@ -15,16 +15,16 @@ using Json = nlohmann::json;
 
 constexpr size_t kClients = 8;
 // Of what the same clients reach in a closed loop.
-constexpr double kShares[] = {0.25, 0.5, 0.75, 0.9, 1.1};
+constexpr double kRateShares[] = {0.25, 0.5, 0.75, 0.9, 1.1};
 
-struct Setting {
+struct LoadSetting {
   std::string scene_file, path_file;
   int side = 256;
   size_t frames_each = 0;
   int threads = 0;
 };
 
-absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
+absl::StatusOr<Json> RunLoads(const LoadSetting& setting, const Progress& progress) {
   const auto flight = LoadFlight(setting.scene_file, setting.path_file);
   if (!flight.ok()) return flight.status();
   const auto& [file, cameras] = *flight;
@@ -44,9 +44,10 @@ absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
                  {"closed", LoadJson(capacity)},
                  {"open", Json::array()}};
   plan.warm_up_frames = 0;
-  for (const double share : kShares) {
+  for (const double share : kRateShares) {
     const auto part = [&](double of) {
-      progress((static_cast<double>(result["open"].size()) + 1 + of) / (1 + std::size(kShares)));
+      progress((static_cast<double>(result["open"].size()) + 1 + of) /
+               (1 + std::size(kRateShares)));
     };
     plan.arrivals =
         ArrivalOptions{.rate = share * capacity.frames_per_s, .kind = ArrivalKind::kPoisson};
@@ -60,7 +61,7 @@ absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
   return result;
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> RatePlots(const Json& result) {
   Plot latency{"latency from when a frame was to begin",
                {.label = "frames asked for, by what a closed loop reaches"},
                {.label = "ms", .logarithmic = true},
@@ -87,7 +88,7 @@ std::vector<Plot> Plots(const Json& result) {
   return {latency, sources};
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> RateTables(const Json& result) {
   ReportTable table{{"frames/s asked for", "served", "p50 ms", "p90 ms", "p99 ms", "wait p99 ms",
                      "late", "hit rate"}};
   const auto text = [](const Json& value) { return absl::StrFormat("%.1f", value.get<double>()); };
@@ -107,11 +108,11 @@ std::vector<ReportTable> Tables(const Json& result) {
 }  // namespace
 
 ReportSection LoadSection(const ReportOptions& options) {
-  Setting setting{.scene_file = absl::StrCat(options.scenes_dir, "/room.textproto"),
-                  .path_file = absl::StrCat(options.scenes_dir, "/paths/room_walk.textproto"),
-                  .side = options.quick ? 64 : 256,
-                  .frames_each = options.quick ? size_t{6} : size_t{60},
-                  .threads = options.threads};
+  LoadSetting setting{.scene_file = absl::StrCat(options.scenes_dir, "/room.textproto"),
+                      .path_file = absl::StrCat(options.scenes_dir, "/paths/room_walk.textproto"),
+                      .side = options.quick ? 64 : 256,
+                      .frames_each = options.quick ? size_t{6} : size_t{60},
+                      .threads = options.threads};
   ReportSection section{.id = "load", .title = "Latency under load"};
   section.text = absl::StrCat(
       kClients,
@@ -126,12 +127,12 @@ ReportSection LoadSection(const ReportOptions& options) {
   section.parameters = {{"side", setting.side},
                         {"clients", kClients},
                         {"frames", setting.frames_each},
-                        {"shares", kShares},
+                        {"shares", kRateShares},
                         {"scene", HashOfFile(setting.scene_file)},
                         {"path", HashOfFile(setting.path_file)}};
-  section.run = [setting](const Progress& progress) { return Run(setting, progress); };
-  section.plots = Plots;
-  section.tables = Tables;
+  section.run = [setting](const Progress& progress) { return RunLoads(setting, progress); };
+  section.plots = RatePlots;
+  section.tables = RateTables;
   return section;
 }
 

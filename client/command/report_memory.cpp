@@ -11,13 +11,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr size_t kLaps = 2;
+constexpr size_t kMemoryLaps = 2;
 
-constexpr ReportFlight kFlights[] = {{"room.textproto", "room_walk"},
-                                     {"face.textproto", "face_walk"},
-                                     {"glass.textproto", "glass_orbit"},
-                                     {"spd/balls_3.nff", "balls_orbit"},
-                                     {"spd/tree_8.nff", "tree_orbit"}};
+constexpr ReportFlight kMemoryFlights[] = {{"room.textproto", "room_walk"},
+                                           {"face.textproto", "face_walk"},
+                                           {"glass.textproto", "glass_orbit"},
+                                           {"spd/balls_3.nff", "balls_orbit"},
+                                           {"spd/tree_8.nff", "tree_orbit"}};
 
 Json PartsJson(const v1::GetStatsReply& stats) {
   Json parts = Json::array();
@@ -28,15 +28,15 @@ Json PartsJson(const v1::GetStatsReply& stats) {
 }
 
 // One client, lap after lap.
-absl::StatusOr<Json> Fly(const LoadedFlight& flight, int side, int threads,
-                         const Progress& progress) {
+absl::StatusOr<Json> FlyWithParts(const LoadedFlight& flight, int side, int threads,
+                                  const Progress& progress) {
   const auto& [file, cameras] = flight;
   LocalClient client(threads, CacheOptions{}.memory_bytes);
   if (auto info = SendScene(client, file, file.name, false); !info.ok()) return info.status();
   LoadPlan plan{.scene = file.name};
   plan.frame.width = plan.frame.height = side;
   plan.pieces = PlanPieces(1, {cameras.size()}, std::nullopt);
-  plan.frames_each = kLaps * cameras.size();
+  plan.frames_each = kMemoryLaps * cameras.size();
   plan.paths = {cameras};
   const auto phases = RunLoad(plan, {&client}, progress);
   if (!phases.ok()) return phases.status();
@@ -47,7 +47,7 @@ absl::StatusOr<Json> Fly(const LoadedFlight& flight, int side, int threads,
   return Json{{"cache_bytes", std::move(bytes)}, {"memory", PartsJson(*stats)}};
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> MemoryPlots(const Json& result) {
   Plot plot{
       "memory of the cache over a path, flown twice", {.label = "frame"}, {.label = "MiB"}, {}};
   for (const Json& flight : result.at("flights")) {
@@ -60,7 +60,7 @@ std::vector<Plot> Plots(const Json& result) {
   return {plot};
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> MemoryTables(const Json& result) {
   ReportTable table{{"scene", "what", "bytes", "cells"}};
   for (const Json& flight : result.at("flights")) {
     for (const Json& part : flight.at("memory")) {
@@ -85,16 +85,16 @@ ReportSection MemorySection(const ReportOptions& options) {
       "linetree load --local --scene SCENE --path PATH --clients 1 "
       "--frames FRAMES --width ",
       side, " --height ", side, " --csv FILE");
-  section.parameters = {{"side", side}, {"laps", kLaps}};
-  AddFlightFiles(folder, kFlights, section);
+  section.parameters = {{"side", side}, {"laps", kMemoryLaps}};
+  AddFlightFiles(folder, kMemoryFlights, section);
   section.run = [folder, side, threads = options.threads](const Progress& progress) {
-    return FlyAll(folder, kFlights, progress,
+    return FlyAll(folder, kMemoryFlights, progress,
                   [&](const LoadedFlight& flight, const Progress& part) {
-                    return Fly(flight, side, threads, part);
+                    return FlyWithParts(flight, side, threads, part);
                   });
   };
-  section.plots = Plots;
-  section.tables = Tables;
+  section.plots = MemoryPlots;
+  section.tables = MemoryTables;
   return section;
 }
 

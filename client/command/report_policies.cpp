@@ -13,24 +13,20 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kScenes[] = {"room.textproto", "spd/balls_3.nff", "spd/tree_8.nff",
-                                   "many_lights.textproto"};
-constexpr double kShares[] = {0.1, 0.25, 0.5, 0.75};
+constexpr double kBudgetShares[] = {0.1, 0.25, 0.5, 0.75};
 constexpr double kLeastShare = 0.25;  // that goals are for
 
-absl::StatusOr<Json> Run(const PolicyCorpus& corpus, const Progress& progress) {
+absl::StatusOr<Json> RunPolicies(const PolicyCorpus& corpus, const Progress& progress) {
   const auto traces = RecordCorpus(corpus, [&](double share) { progress(0.8 * share); });
   if (!traces.ok()) return traces.status();
   std::vector<PolicyBudget> budgets;
-  for (const double share : kShares) {
+  for (const double share : kBudgetShares) {
     budgets.push_back({absl::StrFormat("%g%%", 100 * share), 0, share});
   }
   std::vector<PolicyRow> rows;
-  auto policies = ParsePolicies("all");
-  policies->insert(policies->end(), kToldPolicies.begin(), kToldPolicies.end());
   double done = 0;
   for (const auto& [name, trace] : *traces) {
-    const auto more = SimulateAll(name, trace, *policies, budgets, false, [](double) {});
+    const auto more = SimulateAll(name, trace, ContestPolicies(), budgets, false, [](double) {});
     if (!more.ok()) return more.status();
     rows.insert(rows.end(), more->begin(), more->end());
     progress(0.8 + 0.2 * ++done / static_cast<double>(traces->size()));
@@ -38,7 +34,7 @@ absl::StatusOr<Json> Run(const PolicyCorpus& corpus, const Progress& progress) {
   return Json{{"rows", PolicyJson(rows)}};
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> PoliciesPlots(const Json& result) {
   Plot hits{"hit rate against the budget, mean of all traces",
             {.label = "budget by the working set"},
             {.label = "hit rate", .min = 0, .max = 1},
@@ -59,9 +55,9 @@ std::vector<Plot> Plots(const Json& result) {
   return {hits, costs};
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> PoliciesTables(const Json& result) {
   ReportTable table{{"policy"}};
-  for (const double share : kShares) {
+  for (const double share : kBudgetShares) {
     table.titles.push_back(absl::StrFormat("%g %%: cost by the bound (worst trace)", 100 * share));
   }
   for (const auto& [policy, by_share] : SumUp(PolicyRows(result.at("rows")))) {
@@ -74,7 +70,7 @@ std::vector<ReportTable> Tables(const Json& result) {
   return {table};
 }
 
-std::vector<ReportGoal> Goals(const Json& result) {
+std::vector<ReportGoal> PoliciesGoals(const Json& result) {
   std::vector<PolicyRow> rows = PolicyRows(result.at("rows"));
   std::erase_if(rows, [](const PolicyRow& row) { return row.share < kLeastShare; });
   const std::vector<PolicyContest> contests = ContestsOf(rows);
@@ -90,15 +86,12 @@ std::vector<ReportGoal> Goals(const Json& result) {
 }  // namespace
 
 ReportSection PoliciesSection(const ReportOptions& options) {
-  PolicyCorpus corpus{.scenes = {},
+  PolicyCorpus corpus{.scenes = CorpusScenes(options.scenes_dir),
                       .patterns = AllFlightPatterns(),
                       .frames = options.quick ? 24 : 160,
                       .threads = options.threads};
   corpus.size.width = corpus.size.height = options.quick ? 64 : 192;
-  for (const char* scene : kScenes) {
-    corpus.scenes.push_back(absl::StrCat(options.scenes_dir, "/", scene));
-    if (options.quick) break;
-  }
+  if (options.quick) corpus.scenes.resize(1);
   ReportSection section{.id = "policies", .title = "Eviction policies"};
   section.text =
       "What sessions use of a cache that is large enough is recorded for seven patterns of "
@@ -111,10 +104,10 @@ ReportSection PoliciesSection(const ReportOptions& options) {
   for (const std::string& file : corpus.scenes) {
     section.parameters["files"][file] = HashOfFile(file);
   }
-  section.run = [corpus](const Progress& progress) { return Run(corpus, progress); };
-  section.plots = Plots;
-  section.tables = Tables;
-  section.goals = Goals;
+  section.run = [corpus](const Progress& progress) { return RunPolicies(corpus, progress); };
+  section.plots = PoliciesPlots;
+  section.tables = PoliciesTables;
+  section.goals = PoliciesGoals;
   return section;
 }
 

@@ -17,15 +17,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr size_t kLaps = 2;
+constexpr size_t kRestartLaps = 2;
 // Of the hit rate that there was before, and in how many frames it is to be there again.
 constexpr double kWantedShare = 0.9;
 constexpr int kWantedFrames = 1;
 
-constexpr ReportFlight kFlights[] = {{"room.textproto", "room_walk"},
-                                     {"spd/balls_4.nff", "balls_orbit"},
-                                     {"glass.textproto", "glass_orbit"},
-                                     {"spd/tree_8.nff", "tree_orbit"}};
+constexpr ReportFlight kRestartFlights[] = {{"room.textproto", "room_walk"},
+                                            {"spd/balls_4.nff", "balls_orbit"},
+                                            {"glass.textproto", "glass_orbit"},
+                                            {"spd/tree_8.nff", "tree_orbit"}};
 
 // A host whose cells are kept.
 struct KeptHost {
@@ -63,14 +63,16 @@ absl::StatusOr<Json> Restart(const LoadedFlight& flight, int side, WorkerPool& p
     std::filesystem::remove_all(data, ignored);
   };
   double frames = 0;
-  const auto done = [&] { progress(++frames / static_cast<double>((kLaps + 1) * cameras.size())); };
+  const auto done = [&] {
+    progress(++frames / static_cast<double>((kRestartLaps + 1) * cameras.size()));
+  };
   const auto open = [&] { return CellStore::Open({.folder = data.string()}, [](const auto&) {}); };
   Json json;
   {
     auto store = open();
     if (!store.ok()) return store.status();
     KeptHost kept(**store, file.name, file.scene);
-    for (size_t lap = 0; lap < kLaps; ++lap) {
+    for (size_t lap = 0; lap < kRestartLaps; ++lap) {
       auto rates = HitRates(kept.host, cameras, side, pool, done);
       if (!rates.ok()) return rates.status();
       json[lap == 0 ? "cold" : "warm"] = *std::move(rates);
@@ -100,7 +102,7 @@ int FramesUntilWarm(const Json& flight) {
   return 0;
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> RestartPlots(const Json& result) {
   std::vector<Plot> plots;
   for (const Json& flight : result.at("flights")) {
     Plot plot{absl::StrCat(flight.at("scene").get<std::string>(), ": hit rate after a restart"),
@@ -119,7 +121,7 @@ std::vector<Plot> Plots(const Json& result) {
   return plots;
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> RestartTables(const Json& result) {
   ReportTable table{{"scene", "first frame: cold", "warm", "restarted", "cells", "on the disk",
                      "read and restored in"}};
   for (const Json& flight : result.at("flights")) {
@@ -131,7 +133,7 @@ std::vector<ReportTable> Tables(const Json& result) {
   return {table};
 }
 
-std::vector<ReportGoal> Goals(const Json& result) {
+std::vector<ReportGoal> RestartGoals(const Json& result) {
   std::vector<ReportGoal> goals;
   for (const Json& flight : result.at("flights")) {
     const int frames = FramesUntilWarm(flight);
@@ -155,18 +157,18 @@ ReportSection RestartSection(const ReportOptions& options) {
       " pixels, ray by ray, and a third time by a cache that begins with what the first one has "
       "left on the disk. Hit rates are shares of the pixels that see something.");
   section.command = "linetree bench report --section restart -o DIR";
-  section.parameters = {{"side", side}, {"laps", kLaps}};
-  AddFlightFiles(folder, kFlights, section);
+  section.parameters = {{"side", side}, {"laps", kRestartLaps}};
+  AddFlightFiles(folder, kRestartFlights, section);
   section.run = [folder, side, threads = options.threads](const Progress& progress) {
     WorkerPool pool(threads);
-    return FlyAll(folder, kFlights, progress,
+    return FlyAll(folder, kRestartFlights, progress,
                   [&](const LoadedFlight& flight, const Progress& part) {
                     return Restart(flight, side, pool, part);
                   });
   };
-  section.plots = Plots;
-  section.tables = Tables;
-  section.goals = Goals;
+  section.plots = RestartPlots;
+  section.tables = RestartTables;
+  section.goals = RestartGoals;
   return section;
 }
 

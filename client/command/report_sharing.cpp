@@ -21,7 +21,7 @@ constexpr size_t kGoalClients = 16;
 constexpr const char* kScene = "room.textproto";
 constexpr const char* kPath = "paths/room_walk.textproto";
 
-struct Setting {
+struct SharingSetting {
   std::string scene_file, path_file;
   int side = 256;
   int path_frames = 0;
@@ -30,7 +30,7 @@ struct Setting {
 };
 
 // All clients at the same time, on a cache that starts empty.
-absl::StatusOr<LoadFigures> FlyTogether(const Setting& setting, const SceneFile& file,
+absl::StatusOr<LoadFigures> FlyTogether(const SharingSetting& setting, const SceneFile& file,
                                         const std::vector<Camera>& cameras, size_t clients,
                                         const Progress& progress) {
   LocalClient client(setting.threads, CacheOptions{}.memory_bytes);
@@ -45,7 +45,7 @@ absl::StatusOr<LoadFigures> FlyTogether(const Setting& setting, const SceneFile&
 }
 
 // The cells that one client builds which flies the pieces of all one after the other.
-absl::StatusOr<uint64_t> BuildInTurn(const Setting& setting, const SceneFile& file,
+absl::StatusOr<uint64_t> BuildInTurn(const SharingSetting& setting, const SceneFile& file,
                                      const std::vector<Camera>& cameras, size_t clients) {
   LocalClient client(setting.threads, CacheOptions{}.memory_bytes);
   if (auto info = SendScene(client, file, file.name, false); !info.ok()) return info.status();
@@ -62,7 +62,7 @@ absl::StatusOr<uint64_t> BuildInTurn(const Setting& setting, const SceneFile& fi
   return cells;
 }
 
-absl::StatusOr<Json> Run(const Setting& setting, const Progress& progress) {
+absl::StatusOr<Json> RunSharing(const SharingSetting& setting, const Progress& progress) {
   const auto flight = LoadFlight(setting.scene_file, setting.path_file, setting.path_frames);
   if (!flight.ok()) return flight.status();
   const auto& [file, cameras] = *flight;
@@ -95,7 +95,7 @@ double InTurnRatio(const Json& run) {
   return run.at("cells_built").get<double>() / run.at("cells_built_in_turn").get<double>();
 }
 
-std::vector<Plot> Plots(const Json& result) {
+std::vector<Plot> SharingPlots(const Json& result) {
   const PlotAxis clients{.label = "clients", .logarithmic = true};
   Plot cells{
       "cells built by N clients", clients, {}, {{"by those of one", {}}, {"same frames", {}}}};
@@ -128,7 +128,7 @@ std::vector<Plot> Plots(const Json& result) {
   return {cells, rate, latency, hits};
 }
 
-std::vector<ReportTable> Tables(const Json& result) {
+std::vector<ReportTable> SharingTables(const Json& result) {
   ReportTable table{{"clients", "frames", "cells built", "by those of one", "same frames",
                      "frames/s", "p50 ms", "p99 ms", "hit rate", "cache"}};
   for (const Json& run : result.at("runs")) {
@@ -144,7 +144,7 @@ std::vector<ReportTable> Tables(const Json& result) {
   return {table};
 }
 
-std::vector<ReportGoal> Goals(const Json& result) {
+std::vector<ReportGoal> SharingGoals(const Json& result) {
   for (const Json& run : result.at("runs")) {
     if (run.at("clients") != kGoalClients) continue;
     const double ratio = CellRatio(result, run);
@@ -158,12 +158,12 @@ std::vector<ReportGoal> Goals(const Json& result) {
 }  // namespace
 
 ReportSection SharingSection(const ReportOptions& options) {
-  Setting setting{.scene_file = absl::StrCat(options.scenes_dir, "/", kScene),
-                  .path_file = absl::StrCat(options.scenes_dir, "/", kPath),
-                  .side = options.quick ? 96 : 256,
-                  .path_frames = options.quick ? 48 : 240,
-                  .clients = {1, 4, 16, 64},
-                  .threads = options.threads};
+  SharingSetting setting{.scene_file = absl::StrCat(options.scenes_dir, "/", kScene),
+                         .path_file = absl::StrCat(options.scenes_dir, "/", kPath),
+                         .side = options.quick ? 96 : 256,
+                         .path_frames = options.quick ? 48 : 240,
+                         .clients = {1, 4, 16, 64},
+                         .threads = options.threads};
   ReportSection section{.id = "sharing", .title = "Sharing one cache"};
   section.text = absl::StrCat(
       "The path is cut into equally long pieces, one for each client, of which neighbours share "
@@ -180,10 +180,10 @@ ReportSection SharingSection(const ReportOptions& options) {
                         {"overlap", kOverlap},
                         {"scene", HashOfFile(setting.scene_file)},
                         {"path", HashOfFile(setting.path_file)}};
-  section.run = [setting](const Progress& progress) { return Run(setting, progress); };
-  section.plots = Plots;
-  section.tables = Tables;
-  section.goals = Goals;
+  section.run = [setting](const Progress& progress) { return RunSharing(setting, progress); };
+  section.plots = SharingPlots;
+  section.tables = SharingTables;
+  section.goals = SharingGoals;
   return section;
 }
 

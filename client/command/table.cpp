@@ -68,6 +68,17 @@ std::string Table::RowLine(const std::vector<std::string>& cells) const {
   return Line(columns_, cells);
 }
 
+std::string TextTable(const std::vector<std::string>& titles,
+                      const std::vector<std::vector<std::string>>& rows, size_t names) {
+  std::vector<TableColumn> columns;
+  for (const std::string& title : titles) {
+    columns.push_back({title, columns.size() < names ? Align::kLeft : Align::kRight});
+  }
+  Table table(std::move(columns));
+  for (const auto& row : rows) table.AddRow(row);
+  return table.ToString();
+}
+
 std::string Grouped(uint64_t number) {
   std::string digits = absl::StrCat(number);
   for (size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");

@@ -35,6 +35,11 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
+// All at once; the first columns are aligned to the left, as many as `names`, the others to the
+// right.
+std::string TextTable(const std::vector<std::string>& titles,
+                      const std::vector<std::vector<std::string>>& rows, size_t names = 1);
+
 // 12345678 as "12,345,678".
 std::string Grouped(uint64_t number);
 // A share in [0, 1] as "81.2 %".
