@@ -42,7 +42,7 @@ std::vector<SampleKey> RadianceCache::CollectMissing(const Session& session,
                                                      std::span<const int> corners) const {
   std::vector<SampleKey> missing;
   absl::flat_hash_map<SampleKey, bool> seen;
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(samples_mutex_);
   for (Work& work : works) {
     if (!work.IsOpen()) continue;
     for (const int corner : corners) {
@@ -81,7 +81,7 @@ void RadianceCache::TraceMissing(const Session& session, const std::vector<Sampl
       if (!sample) sample = *by_key.at(work.KeyOf(corner, session.forest));
     }
   }
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(samples_mutex_);
   for (size_t i = 0; i < keys.size(); ++i) {
     if (samples[i]) samples_.Put(keys[i], samples[i]);
   }
@@ -118,43 +118,63 @@ BuildStats RadianceCache::Build(const Session& session, std::span<const CellRef>
 RadianceCache::ObjectTrees& RadianceCache::Grow(Forest& forest, int32_t object) {
   if (!forest.trees) {
     auto table = std::make_unique<Forest::Trees>(forest.objects);
-    LT_CHECK(forest.trees.PutFirst(table));
+    forest.trees.PutFirst(table);
   }
   auto& slot = (*forest.trees)[static_cast<size_t>(object)];
   if (!slot) {
     auto trees = std::make_unique<ObjectTrees>(pools_);
-    LT_CHECK(slot.PutFirst(trees));
-    ++forest.grown;
+    if (slot.PutFirst(trees)) ++forest.grown;
   }
   return *slot;
 }
 
+bool RadianceCache::PublishOne(Forest& forest, const Work& work, uint32_t now) {
+  const uint64_t needed = kCellBytes + forest.GrowthBytes();
+  // What others are about to take is promised until it counts as held, so that all together keep
+  // to the budget.
+  const uint64_t promised = promised_ += needed;
+  const bool has_room = CellBytes() + promised <= cell_budget_;
+  if (has_room) {
+    auto& trees = Grow(forest, work.ref.object).pair;
+    trees[static_cast<size_t>(work.ref.pair)].Publish(work.ref.cell, work.judgement, now);
+  }
+  promised_ -= needed;
+  return has_room;
+}
+
 void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>& works,
                                  BuildStats& stats) {
-  const std::lock_guard lock(mutex_);
-  samples_.EndRound();
+  {
+    const std::lock_guard lock(samples_mutex_);
+    samples_.EndRound();
+  }
   stats.cells_tried += works.size();
   for (const Work& work : works) {
     if (work.judgement.verdict == Verdict::kCertified) ++stats.cells_accepted;
   }
+  std::shared_lock publishing(trees_mutex_);
+  // Null when sixteen other path limits took its place.
   Forest* forest = FindForest(session.forest);
-  if (forest == nullptr) {  // sixteen other path limits took its place
-    stats.cells_dropped += works.size();
-    return;
-  }
   for (size_t i = 0; i < works.size(); ++i) {
-    const Work& work = works[i];
-    const uint64_t needed = kCellBytes + forest->GrowthBytes();
-    if (CellBytes() + needed > cell_budget_) {
-      stats.cells_evicted += MakeRoom(needed, session.now);
-      if (CellBytes() + needed > cell_budget_) {
-        stats.cells_dropped += works.size() - i;
-        return;
+    if (forest != nullptr && PublishOne(*forest, works[i], session.now)) continue;
+    publishing.unlock();
+    bool is_published = false;
+    {
+      const std::lock_guard alone(trees_mutex_);
+      forest = FindForest(session.forest);
+      if (forest != nullptr) {
+        const uint64_t needed = kCellBytes + forest->GrowthBytes();
+        if (CellBytes() + needed > cell_budget_)
+          stats.cells_evicted += MakeRoom(needed, session.now);
+        is_published = PublishOne(*forest, works[i], session.now);
       }
     }
-    ObjectTrees& trees = Grow(*forest, work.ref.object);
-    trees.pair[static_cast<size_t>(work.ref.pair)].Publish(work.ref.cell, work.judgement,
-                                                           session.now);
+    if (!is_published) {
+      stats.cells_dropped += works.size() - i;
+      return;
+    }
+    publishing.lock();
+    forest = FindForest(session.forest);
   }
 }
 

@@ -25,9 +25,9 @@ struct RadianceCache::Forest {
   uint32_t id = 0;
   std::atomic<uint32_t> last_used{0};
   PathLimits limits;
-  size_t objects = 0;       // of the scene
-  OwningSlot<Trees> trees;  // by object; made with the first of them
-  uint64_t grown = 0;       // objects that have trees; guarded by mutex_
+  size_t objects = 0;              // of the scene
+  OwningSlot<Trees> trees;         // by object; made with the first of them
+  std::atomic<uint64_t> grown{0};  // objects that have trees
 
   uint64_t ByteSize() const { return grown * sizeof(ObjectTrees) + (trees ? TableBytes() : 0); }
   // The most that one more object can add.

@@ -40,29 +40,40 @@ RadianceCache::RadianceCache(const Tracer& tracer, const CacheOptions& options)
 
 RadianceCache::~RadianceCache() = default;
 
+uint32_t RadianceCache::NextTick() { return (++clock_) & kStampMask; }
+
+RadianceCache::Forest* RadianceCache::ForestOf(const PathLimits& limits) const {
+  Forest* found = nullptr;
+  ForEachForest([&](Forest& forest) { found = forest.limits == limits ? &forest : found; });
+  return found;
+}
+
 RadianceCache::Session RadianceCache::Open(const PathLimits& limits) {
-  const std::lock_guard lock(mutex_);
-  clock_ = (clock_ + 1) & kStampMask;
-  OwningSlot<Forest>* place = nullptr;
-  for (auto& slot : forests_) {
-    const Forest* forest = slot.get();
-    if (forest != nullptr && forest->limits == limits) {
-      slot->last_used = clock_;
-      return {forest->id, clock_, limits};
+  const uint32_t now = NextTick();
+  {
+    const std::shared_lock publishing(trees_mutex_);
+    if (Forest* forest = ForestOf(limits)) {
+      forest->last_used = now;
+      return {forest->id, now, limits};
     }
-    const bool is_better =
-        place == nullptr ||
-        (*place && (forest == nullptr || forest->last_used < (*place)->last_used));
-    if (is_better) place = &slot;
   }
-  Drop(*place);
-  auto forest = std::make_unique<Forest>();
-  forest->id = next_forest_++;
-  forest->last_used = clock_;
-  forest->limits = limits;
-  forest->objects = charts_.size();
-  LT_CHECK(place->PutFirst(forest));
-  return {(*place)->id, clock_, limits};
+  const std::lock_guard alone(trees_mutex_);
+  Forest* made = ForestOf(limits);  // by somebody else meanwhile
+  if (made == nullptr) {
+    auto* place = &forests_[0];
+    for (auto& slot : forests_) {
+      if (*place && (!slot || slot->last_used < (*place)->last_used)) place = &slot;
+    }
+    Drop(*place);
+    auto forest = std::make_unique<Forest>();
+    forest->id = next_forest_++;
+    forest->limits = limits;
+    forest->objects = charts_.size();
+    made = forest.get();
+    LT_CHECK(place->PutFirst(forest));
+  }
+  made->last_used = now;
+  return {made->id, now, limits};
 }
 
 void RadianceCache::Drop(OwningSlot<Forest>& slot) {
@@ -72,6 +83,7 @@ void RadianceCache::Drop(OwningSlot<Forest>& slot) {
   forest->ForEach([](int32_t, ObjectTrees& trees) {
     for (Linetree& tree : trees.pair) tree.Clear();
   });
+  const std::lock_guard lock(samples_mutex_);
   samples_.DropForest(forest->id);
 }
 
@@ -120,12 +132,14 @@ void RadianceCache::Find(const Session& session, double epsilon, std::span<const
 }
 
 void RadianceCache::SetMemoryBytes(uint64_t memory_bytes) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard alone(trees_mutex_);
   cell_budget_ = memory_bytes - SampleBudget(memory_bytes);
-  samples_.SetLimit(SampleBudget(memory_bytes));
+  {
+    const std::lock_guard lock(samples_mutex_);
+    samples_.SetLimit(SampleBudget(memory_bytes));
+  }
   // A tick of its own: no session's cells are exempt.
-  clock_ = (clock_ + 1) & kStampMask;
-  if (CellBytes() > cell_budget_) MakeRoom(0, clock_);
+  if (CellBytes() > cell_budget_) MakeRoom(0, NextTick());
 }
 
 uint64_t RadianceCache::CellBytes() const {
@@ -135,12 +149,14 @@ uint64_t RadianceCache::CellBytes() const {
 }
 
 uint64_t RadianceCache::ByteSize() const {
-  const std::lock_guard lock(mutex_);
+  const EpochGuard reading;
+  const std::lock_guard lock(samples_mutex_);
   return CellBytes() + samples_.ByteSize();
 }
 
 uint64_t RadianceCache::CountBytes() const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard alone(trees_mutex_);
+  const std::lock_guard lock(samples_mutex_);
   uint64_t bytes = samples_.CountBytes();
   ForEachForest([&](const Forest& forest) {
     bytes += forest.ByteSize();
@@ -152,7 +168,7 @@ uint64_t RadianceCache::CountBytes() const {
 }
 
 uint64_t RadianceCache::CellCount() const {
-  const std::lock_guard lock(mutex_);
+  const EpochGuard reading;
   uint64_t cells = 0;
   ForEachForest([&](const Forest& forest) {
     forest.ForEach([&](int32_t, const ObjectTrees& trees) {
@@ -163,13 +179,14 @@ uint64_t RadianceCache::CellCount() const {
 }
 
 std::vector<std::array<uint64_t, kVerdictCount>> RadianceCache::CellVerdicts() const {
-  const std::lock_guard lock(mutex_);
+  const EpochGuard reading;
   std::vector<std::array<uint64_t, kVerdictCount>> verdicts(charts_.size());
   ForEachForest([&](const Forest& forest) {
     forest.ForEach([&](int32_t object, const ObjectTrees& trees) {
       for (const Linetree& tree : trees.pair) {
+        const auto of_tree = tree.verdicts();
         for (size_t v = 0; v < kVerdictCount; ++v) {
-          verdicts[static_cast<size_t>(object)][v] += tree.verdicts()[v];
+          verdicts[static_cast<size_t>(object)][v] += of_tree[v];
         }
       }
     });
@@ -178,8 +195,9 @@ std::vector<std::array<uint64_t, kVerdictCount>> RadianceCache::CellVerdicts() c
 }
 
 void RadianceCache::Clear() {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard alone(trees_mutex_);
   for (auto& slot : forests_) Drop(slot);
+  const std::lock_guard lock(samples_mutex_);
   samples_.Clear();
 }
 

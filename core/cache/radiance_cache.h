@@ -4,8 +4,9 @@
 // (at most kMaxForests; the one that was used least recently makes room). The answer to a ray never
 // depends on what else the cache holds beyond the choice between interpolating and tracing.
 //
-// Thread safety: every method may be called from any thread. Find waits for nobody (epoch.h); one
-// lock guards what changes forests, pools and samples. Judging and tracing run outside it.
+// Thread safety: every method may be called from any thread. Find waits for nobody (epoch.h).
+// Builders trace, judge and publish at the same time as each other, the latter by compare-and-swap
+// (linetree.h); who evicts, or makes and drops forests, waits for those who publish.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <span>
 #include <vector>
 
@@ -115,7 +117,7 @@ class RadianceCache {
   struct Work;
   struct Victim;
 
-  // Within a guard, or with the lock.
+  // Within a guard, or with the trees' lock, shared or not.
   Forest* FindForest(uint32_t id) const;
   // visit(Forest&); as FindForest.
   template <class Fn>
@@ -124,20 +126,26 @@ class RadianceCache {
       if (Forest* forest = slot.get()) visit(*forest);
     }
   }
-  // Takes a forest out when nobody reads it any more. Needs the lock.
+  uint32_t NextTick();
+  // The forest that has these limits; null where there is none. With the trees' lock, shared or
+  // not.
+  Forest* ForestOf(const PathLimits& limits) const;
+  // Takes a forest out when nobody reads it any more. Needs the trees' lock.
   void Drop(OwningSlot<Forest>& slot);
-  // Bytes of forests and cells, without samples. Needs the lock.
+  // Bytes of forests and cells, without samples. As FindForest.
   uint64_t CellBytes() const;
   std::vector<SampleKey> CollectMissing(const Session& session, std::vector<Work>& works,
                                         std::span<const int> corners) const;
   void TraceMissing(const Session& session, const std::vector<SampleKey>& keys,
                     const ParallelLoop& loop, std::vector<Work>& works,
                     std::span<const int> corners, BuildStats& stats);
-  // The object's trees, made where there are none. Needs the lock.
+  // The object's trees, made where there are none. With the trees' lock, shared or not.
   ObjectTrees& Grow(Forest& forest, int32_t object);
   void PublishWorks(const Session& session, const std::vector<Work>& works, BuildStats& stats);
+  // False, and nothing done, where the budget has no room. With the trees' lock, shared or not.
+  bool PublishOne(Forest& forest, const Work& work, uint32_t now);
   // Frees cells not used by this session, least recently used leaves first, until `needed` more
-  // bytes fit. Returns how many it evicted. Needs the lock.
+  // bytes fit. Returns how many it evicted. Needs the trees' lock.
   uint64_t MakeRoom(uint64_t needed, uint32_t now);
   // Those that this session does not use, in the order in which they go.
   std::vector<Victim> Leaves(uint32_t now) const;
@@ -150,15 +158,19 @@ class RadianceCache {
   std::vector<ObjectChart> charts_;  // by object
   std::vector<bool> caches_;         // by object: whether looking up can pay
 
-  mutable std::mutex mutex_;
-  // Guarded by mutex_, but for Find:
+  // Shared by those who publish cells; who has it alone may take cells and forests away. Taken
+  // before the next.
+  mutable std::shared_mutex trees_mutex_;
+  mutable std::mutex samples_mutex_;
+  // Guarded by trees_mutex_, but for Find:
   CellPools pools_;
   std::array<OwningSlot<Forest>, kMaxForests> forests_;
-  // Guarded by mutex_:
+  // Guarded by trees_mutex_:
   uint64_t cell_budget_;  // what the samples' share leaves
-  SampleStore samples_;
   uint32_t next_forest_ = 1;
-  uint32_t clock_ = 0;
+  std::atomic<uint64_t> promised_{0};  // bytes that those who publish are about to take
+  std::atomic<uint32_t> clock_{0};
+  SampleStore samples_;  // guarded by samples_mutex_
 };
 
 }  // namespace linetree

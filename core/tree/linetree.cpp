@@ -24,11 +24,19 @@ uint32_t LoadChildren(CellNode& node) {
 void StoreChildren(CellNode& node, uint32_t children) {
   std::atomic_ref<uint32_t>(node.children).store(children, std::memory_order_release);
 }
+// Changes `word` where it is `expected`, which otherwise becomes what it is.
+bool Exchange(uint32_t& word, uint32_t& expected, uint32_t wanted) {
+  return std::atomic_ref<uint32_t>(word).compare_exchange_strong(expected, wanted,
+                                                                 std::memory_order_acq_rel);
+}
 Verdict VerdictOf(uint32_t state) { return static_cast<Verdict>(state & 15); }
 bool IsTried(CellNode& node) { return VerdictOf(LoadState(node)) != Verdict::kUntried; }
 uint32_t StateOf(Verdict verdict, uint32_t now) {
   return static_cast<uint32_t>(verdict) | (now & kStampMask) << 4;
 }
+
+// Of an untried cell that somebody is about to publish.
+const uint32_t kClaimed = StateOf(Verdict::kUntried, 1);
 
 // The verdict shares the word: a cell that has been evicted meanwhile stays so.
 void Touch(CellNode& node, uint32_t state, uint32_t now) {
@@ -79,19 +87,13 @@ bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t 
   for (int depth = 0; depth < cell.depth; ++depth) {
     CellNode& parent = At(at);
     if (!IsTried(parent)) return false;
-    if (parent.children == 0) {
-      // Evicted further up: a block that nothing comes into is never one of leaves.
-      if (depth + 1 < cell.depth) return false;
-      const uint32_t children = pools_->blocks.Allocate();
-      CellBlock& block = pools_->blocks[children];
-      block.parent_block = at.block;
-      block.parent_child = at.child;
-      StoreChildren(parent, children);
-    }
-    at = {parent.children, static_cast<uint32_t>(cell.ChildAt(depth))};
+    // Evicted further up: a block that nothing comes into is never one of leaves.
+    if (depth + 1 < cell.depth && LoadChildren(parent) == 0) return false;
+    at = {ChildrenOf(at), static_cast<uint32_t>(cell.ChildAt(depth))};
   }
   CellNode& node = At(at);
-  if (IsTried(node)) return false;
+  uint32_t unclaimed = StateOf(Verdict::kUntried, 0);
+  if (!Exchange(node.state, unclaimed, kClaimed)) return false;
   if (judgement.verdict == Verdict::kCertified) {
     node.spread = std::nextafter(static_cast<float>(judgement.spread),
                                  std::numeric_limits<float>::infinity());
@@ -102,6 +104,25 @@ bool Linetree::Publish(const CellId& cell, const Judgement& judgement, uint32_t 
   ++cell_count_;
   ++verdicts_[static_cast<size_t>(judgement.verdict)];
   return true;
+}
+
+uint32_t Linetree::ChildrenOf(CellHandle at) {
+  CellNode& parent = At(at);
+  uint32_t children = LoadChildren(parent);
+  if (children != 0) return children;
+  const uint32_t made = pools_->blocks.Allocate();
+  CellBlock& block = pools_->blocks[made];
+  block.parent_block = at.block;
+  block.parent_child = at.child;
+  if (Exchange(parent.children, children, made)) return made;
+  pools_->blocks.Free(made);  // which nobody has seen
+  return children;
+}
+
+std::array<uint64_t, kVerdictCount> Linetree::verdicts() const {
+  std::array<uint64_t, kVerdictCount> verdicts;
+  std::copy(verdicts_.begin(), verdicts_.end(), verdicts.begin());
+  return verdicts;
 }
 
 bool Linetree::HasTriedChild(const CellNode& node) const {
@@ -170,7 +191,7 @@ void Linetree::Clear() {
   });
   release(root_);
   cell_count_ = 0;
-  verdicts_ = {};
+  for (auto& count : verdicts_) count = 0;
 }
 
 uint64_t Linetree::CountBytes() const {

@@ -1,11 +1,13 @@
 // A linetree: the lazily built tree of 4D cells of one object and face pair (paper section 6).
 //
-// Thread safety: Find may run at any time but with Clear. Of the methods that change trees on the
-// same pools, or look at whole trees, one may run at a time. What EvictLeaf takes out may be freed
-// when nobody reads it any more.
+// Thread safety: Find may run at any time but with Clear, and Publish at the same time as Find and
+// itself: who comes first with a cell, by compare-and-swap, publishes it. The other methods that
+// change trees, or look at whole ones, run one at a time and not with Publish. What EvictLeaf takes
+// out may be freed when nobody reads it any more.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -22,7 +24,9 @@ struct CellNode {
   uint32_t children = 0;     // handle of the block of the 16 children, 0: none
   uint32_t interpolant = 0;  // handle, 0: none
   float spread = 0;          // of a certified cell, rounded up
-  uint32_t state = 0;        // bits 0..3 the verdict, bits 4..31 when it was last used
+  // Bits 0..3 the verdict, bits 4..31 when it was last used; of an untried cell whether somebody is
+  // about to publish it.
+  uint32_t state = 0;
 };
 static_assert(sizeof(CellNode) == 16);
 
@@ -83,8 +87,8 @@ class Linetree {
   // max_depth. Marks the last tried cell as used at `now`.
   Lookup Find(const RayCoords& coords, double epsilon, int max_depth, uint32_t now) const;
 
-  // Stores the judgement of a cell; true if it was new. Where eviction has taken the cell's parents
-  // meanwhile it is dropped.
+  // Stores the judgement of a cell; true if nobody else has. Where eviction has taken the cell's
+  // parents meanwhile it is dropped.
   bool Publish(const CellId& cell, const Judgement& judgement, uint32_t now);
 
   // Visits the cells that have been tried and have no tried children.
@@ -97,7 +101,7 @@ class Linetree {
 
   uint64_t cell_count() const { return cell_count_; }
   // Tried cells by their verdict.
-  const std::array<uint64_t, kVerdictCount>& verdicts() const { return verdicts_; }
+  std::array<uint64_t, kVerdictCount> verdicts() const;
   // Recomputes what this tree holds of the pools, from scratch.
   uint64_t CountBytes() const;
 
@@ -105,14 +109,16 @@ class Linetree {
   CellNode& At(CellHandle h) const {
     return h.block == 0 ? root_ : pools_->blocks[h.block].child[h.child];
   }
+  // Handle of the children, which are made where there are none.
+  uint32_t ChildrenOf(CellHandle parent);
   bool HasTriedChild(const CellNode& node) const;
   // Visits every block, children before parents.
   void ForEachBlock(const std::function<void(uint32_t block)>& visit) const;
 
   CellPools* pools_;
   mutable CellNode root_;  // mutable like the pools' cells: Find marks it as used
-  uint64_t cell_count_ = 0;
-  std::array<uint64_t, kVerdictCount> verdicts_{};
+  std::atomic<uint64_t> cell_count_{0};
+  std::array<std::atomic<uint64_t>, kVerdictCount> verdicts_{};
 };
 
 // Stamps wrap after 2^28 ticks of the clock; then a cell may be taken for fresh once, which costs

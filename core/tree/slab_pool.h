@@ -2,14 +2,15 @@
 // before new memory is taken, so the memory held is the largest that was ever in use at once,
 // rounded up to a slab.
 //
-// Thread safety: operator[] may run at any time, for handles that are in use; everything else needs
-// exclusive access.
+// Thread safety: everything may run at any time. operator[], for handles that are in use, waits for
+// nobody; a lock guards the lists of records for as long as one is taken from them or put back.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/math/check.h"
@@ -23,6 +24,7 @@ class SlabPool {
 
   // Handle of a value-initialised record; never 0.
   uint32_t Allocate() {
+    const std::lock_guard lock(mutex_);
     ++in_use_;
     if (!free_.empty()) {
       const uint32_t handle = free_.back();
@@ -34,6 +36,7 @@ class SlabPool {
     return ++next_;
   }
   void Free(uint32_t handle) {
+    const std::lock_guard lock(mutex_);
     LT_CHECK(handle != 0 && handle <= next_);
     free_.push_back(handle);
     --in_use_;
@@ -58,13 +61,16 @@ class SlabPool {
     index_.store(indices_.back().get(), std::memory_order_release);
   }
 
+  std::mutex mutex_;
+  // Guarded by mutex_:
   std::vector<std::unique_ptr<T[]>> slabs_;
   std::vector<std::unique_ptr<T*[]>> indices_;
-  std::atomic<T**> index_{nullptr};  // the last of indices_
   size_t index_slots_ = 0;
   std::vector<uint32_t> free_;
   uint32_t next_ = 0;
-  uint64_t in_use_ = 0;
+  // Changed with it only:
+  std::atomic<T**> index_{nullptr};  // the last of indices_
+  std::atomic<uint64_t> in_use_{0};
 };
 
 }  // namespace linetree

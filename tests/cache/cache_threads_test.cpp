@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <barrier>
 #include <latch>
+#include <set>
 #include <thread>
 #include <vector>
 
 #include "core/cache/path_cache.h"
+#include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
 #include "tests/support/demo_scenes.h"
 
@@ -55,6 +58,31 @@ class CacheThreads : public testing::TestWithParam<EpochKind> {
         }
       }
     }
+  }
+  // Asks for the paper's cells of all hits, and builds those that are missing; false when none is.
+  // Who has `together` publishes when the others do.
+  bool Build(RadianceCache& cache, std::barrier<>* together = nullptr) {
+    const auto session = cache.Open({});
+    std::set<CellRef> missing;
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      const auto query = cache.QueryFor(hits_[i], rays_[i]);
+      if (!query) continue;
+      CellAnswer answer;
+      cache.Find(session, 0.1, {&*query, 1}, {&answer, 1});
+      if (answer.kind == Lookup::Kind::kAnswer) {
+        EXPECT_GE(MaxChannel(answer.radiance), 0);
+      }
+      if (answer.kind != Lookup::Kind::kUnbuilt) continue;
+      missing.insert({query->object, query->pair, answer.cell});
+    }
+    const std::vector<CellRef> cells(missing.begin(), missing.end());
+    int loops = 0;  // three that trace, one that judges
+    cache.Build(session, cells, [&](size_t count, const std::function<void(size_t)>& body) {
+      kInTurn(count, body);
+      if (++loops == 4 && together != nullptr) together->arrive_and_wait();
+    });
+    EXPECT_EQ(loops, 4);
+    return !cells.empty();
   }
   std::vector<PathCache::Sample> Use(const PathCache& cache) {
     std::vector<PathCache::Sample> samples;
@@ -149,7 +177,7 @@ TEST_P(CacheThreads, ManyAtOnce) {
     std::vector<std::thread> threads;
     for (int t = 0; t < 3; ++t) {
       threads.emplace_back([&, t] {
-        for (int round = 0; round < 12; ++round) {
+        for (int round = 0; round < (built_surfaces > 100 ? 12 : 500); ++round) {
           Use(surfaces);
           built_surfaces += surfaces.Refine(20 + t, kInTurn);
           built_paths += paths.Refine({}, Use(paths), 20 + t, kInTurn);
@@ -178,6 +206,51 @@ TEST_P(CacheThreads, ManyAtOnce) {
     EXPECT_GT(built_surfaces, 100u);
     EXPECT_EQ(budget == kPlenty, surfaces.evicted().cells == 0);
   }
+}
+
+// Whoever comes first publishes a cell, and what is there at the end does not depend on who it was.
+TEST_P(CacheThreads, ManyPublishThePapersCells) {
+  RadianceCache alone(tracer_, {.max_cell_depth = 4});
+  while (Build(alone)) {
+  }
+  ASSERT_GT(alone.CellCount(), 500u);
+  for (int time = 0; time < 10; ++time) {
+    RadianceCache cache(tracer_, {.max_cell_depth = 4});
+    std::barrier together(3);
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 3; ++t) {
+      threads.emplace_back([&] {
+        while (Build(cache, &together)) {
+        }
+        together.arrive_and_drop();
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(cache.CellCount(), alone.CellCount());
+    EXPECT_EQ(cache.CellVerdicts(), alone.CellVerdicts());
+    EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
+  }
+}
+
+TEST_P(CacheThreads, ThePapersCellsKeepToTheBudgetWhoeverPublishesThem) {
+  const uint64_t budget = 150'000;
+  RadianceCache cache(tracer_, {.memory_bytes = budget, .max_cell_depth = 4});
+  std::atomic<int> rounds{0};
+  std::barrier together(3);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 3; ++t) {
+    threads.emplace_back([&, t] {
+      for (int round = 0; round < 12; ++round, ++rounds) {
+        Build(cache, &together);
+        if (t == 0 && round % 4 == 3) cache.SetMemoryBytes(round == 7 ? budget : budget / 2);
+        if (t == 1 && round == 5) cache.Clear();
+      }
+    });
+  }
+  while (rounds < 36) EXPECT_LE(cache.ByteSize(), budget);
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(cache.CellCount(), 0u);
+  EXPECT_EQ(cache.ByteSize(), cache.CountBytes());
 }
 
 // Budgets, policies and whole caches change under readers and builders.
