@@ -1,5 +1,6 @@
 #include "core/cache/change_reach.h"
 
+#include <array>
 #include <optional>
 
 #include "core/tree/candidate_search.h"
@@ -24,19 +25,29 @@ Box3 Together(Box3 a, const Box3& b) {
   return a;
 }
 
-// Where rays of the cell can meet the object.
+// Where rays of the cell can meet the object: points of a line are affine in its coordinates, so
+// every axis is by itself, and within rounding the box is that of the corners.
 Box3 EndsOf(const PathTree& tree, const PathNode& node) {
   const LineForm form = tree.chart().FormOf(node.root);
-  Box3 box;
-  for (int i = 0; i < kCellCorners; ++i) {
-    const RayCoords at = CoordsOfGrid(node.cell.Corner(i));
-    Vec3d origin = form.origin, direction = form.direction;
+  const RayCoords low = CoordsOfGrid(node.cell.Corner(0));
+  const RayCoords high = CoordsOfGrid(node.cell.Corner(kCellCorners - 1));
+  const auto box_of = [&](const Vec3d& at, const std::array<Vec3d, 4>& by) {
+    Box3 box;
+    box.Add(at);
     for (size_t k = 0; k < 4; ++k) {
-      origin = origin + form.origin_by[k] * at[k];
-      direction = direction + form.direction_by[k] * at[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double a = by[k][axis] * low[k], b = by[k][axis] * high[k];
+        box.min[axis] += std::min(a, b);
+        box.max[axis] += std::max(a, b);
+      }
     }
-    box.Add(origin);
-    if (form.between_planes) box.Add(origin + direction);
+    return box;
+  };
+  Box3 box = box_of(form.origin, form.origin_by);
+  if (form.between_planes) {
+    std::array<Vec3d, 4> by;
+    for (size_t k = 0; k < 4; ++k) by[k] = form.origin_by[k] + form.direction_by[k];
+    box.Add(box_of(form.origin + form.direction, by));
   }
   return box;
 }

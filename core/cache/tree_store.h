@@ -206,9 +206,11 @@ class TreeStore {
         progress |= TryTakeChildren(victim.object, *victim.node, removed);
       }
     }
-    for (const Victim& victim : TreesByUse()) {
-      if (is_done()) break;
-      TryTakeTree(victim.object, removed);
+    if (!is_done()) {
+      for (const Victim& victim : TreesByUse()) {
+        if (is_done()) break;
+        TryTakeTree(victim.object, removed);
+      }
     }
     Dispose(removed);
     if (byte_size() > target && byte_size() == IndexBytes()) Clear();
