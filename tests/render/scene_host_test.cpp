@@ -231,15 +231,16 @@ TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
 }
 
 // Frames of a cache that is too small do without it, and try it again; its twin goes on asking.
-TEST(SceneHostPauseTest, ACacheThatIsTooSmallIsTriedNowAndThen) {
-  const auto scene = test::BallsOnFloor(300, 70);
-  WorkerPool pool(2);
-  FrameRequest request;
-  request.camera = scene->cameras[0];
-  request.width = request.height = 96;
-  request.options.max_relative_error = 0;
-  const auto tries = [&](const CacheOptions& options) {
+class SceneHostPauseTest : public testing::Test {
+ protected:
+  // In which of twenty frames a cache is tried; checks that they are the classical ones.
+  static std::vector<int> Tries(std::shared_ptr<const Scene> scene, const CacheOptions& options) {
+    WorkerPool pool(2);
     SceneHost host(scene, options);
+    FrameRequest request;
+    request.camera = scene->cameras[0];
+    request.width = request.height = 96;
+    request.options.max_relative_error = 0;
     std::vector<int> frames;
     for (int i = 0; i < 20; ++i) {
       const auto frame = host.RenderFrame(request, pool);
@@ -250,11 +251,25 @@ TEST(SceneHostPauseTest, ACacheThatIsTooSmallIsTriedNowAndThen) {
       if (frame->stats.cells_tried > 0 || frame->stats.cells_unkept > 0) frames.push_back(i);
     }
     return frames;
-  };
-  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes}), testing::ElementsAre(0, 16));
-  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes, .always_ask = true}),
+  }
+};
+
+TEST_F(SceneHostPauseTest, ACacheThatIsTooSmallIsTriedNowAndThen) {
+  const auto scene = test::BallsOnFloor(300, 70);
+  EXPECT_THAT(Tries(scene, {.memory_bytes = CachePause::kLeastBytes}), testing::ElementsAre(0, 16));
+  EXPECT_THAT(Tries(scene, {.memory_bytes = CachePause::kLeastBytes, .always_ask = true}),
               testing::SizeIs(20));
-  EXPECT_THAT(tries({.memory_bytes = CachePause::kLeastBytes - 1}), testing::IsEmpty());
+  EXPECT_THAT(Tries(scene, {.memory_bytes = CachePause::kLeastBytes - 1}), testing::IsEmpty());
+}
+
+// Rays that end on what no lamp lights need no search of the scene: no cell has helped them.
+TEST_F(SceneHostPauseTest, RaysThatNeedNoSearchAnywayAreNoReasonToKeepACache) {
+  auto scene = std::make_shared<Scene>(*test::BallsOnFloor(1300, 70));
+  Material unlit = scene->materials[0];
+  unlit.diffuse = {};
+  scene->materials.push_back(unlit);
+  scene->objects[0].material = static_cast<int>(scene->materials.size()) - 1;
+  EXPECT_THAT(Tries(scene, {.memory_bytes = CachePause::kLeastBytes}), testing::ElementsAre(0, 16));
 }
 
 // Cells are divided for what a frame has in them, not for where its first rays happen to fall: who
