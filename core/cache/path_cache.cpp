@@ -243,7 +243,7 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
     if (builder.forest() == nullptr) return 0;
     Forest& forest = *builder.forest();
     forest.last_used = now;
-    forest.store.PlantWanted(BudgetOf(forest), [](size_t) { return true; });
+    forest.store.PlantWanted(now, BudgetOf(forest), [](size_t) { return true; });
     const double rays = static_cast<double>(samples.size()) * weight;
     size_t allowance = std::max(kMinNewCells, static_cast<size_t>(rays / kRaysPerNewCell));
     std::vector<Group> groups = GroupByLeaf(forest, samples);

@@ -76,7 +76,7 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
       if (owned) works.push_back({std::move(owned), object, uses * weight});
     });
   });
-  const bool all_planted = store_.PlantWanted(TreeBudget(), [&](size_t object) {
+  const bool all_planted = store_.PlantWanted(clock_, TreeBudget(), [&](size_t object) {
     return thrift.may_grow == nullptr || (*thrift.may_grow)(object);
   });
   unkept += all_planted ? 0 : 1;

@@ -82,14 +82,14 @@ class TreeStore {
   // Trees for the objects that readers asked for, as far as `memory_bytes` go: those
   // that may_grow(size_t object) -> bool lets grow. False when there was no room for one.
   template <class Fn>
-  bool PlantWanted(uint64_t memory_bytes, Fn&& may_grow) {
+  bool PlantWanted(uint32_t now, uint64_t memory_bytes, Fn&& may_grow) {
     MakeIndex(memory_bytes);
     const Index* index = index_.get();
     if (index == nullptr) return false;
     for (size_t object = 0; object < index->trees.size(); ++object) {
       if (!index->wanted[object].exchange(false, std::memory_order_relaxed)) continue;
       if (index->trees[object] || !may_grow(object)) continue;
-      if (!Plant(object, memory_bytes)) return false;
+      if (!Plant(object, now, memory_bytes)) return false;
     }
     return true;
   }
@@ -100,7 +100,7 @@ class TreeStore {
   bool Restore(size_t object, int root, const typename Tree::Cell& cell,
                std::unique_ptr<const Payload> payload, uint32_t now, uint64_t memory_bytes) {
     MakeIndex(memory_bytes);
-    if (!index_ || (Get(object) == nullptr && !Plant(object, memory_bytes))) return false;
+    if (!index_ || (Get(object) == nullptr && !Plant(object, now, memory_bytes))) return false;
     auto& cells = Get(object)->cells();
     if (root >= cells.roots()) return true;
     Node* node = &cells.Root(root);
@@ -295,9 +295,11 @@ class TreeStore {
     cells_ -= cells;
     byte_size_ -= bytes;
   }
-  // False when there is no room.
-  bool Plant(size_t object, uint64_t memory_bytes) {
+  // False when there is no room. Somebody has just asked for it: it is not what goes first.
+  bool Plant(size_t object, uint32_t now, uint64_t memory_bytes) {
     auto tree = std::make_unique<Tree>(scene_.objects[object]);
+    tree->cells().ForEachRoot(
+        [now](Node& root) { root.last_used.store(now, std::memory_order_relaxed); });
     const uint64_t bytes = tree->OwnBytes();
     if (!Reserve(bytes, memory_bytes)) return false;
     if (!index_->trees[object].PutFirst(tree)) byte_size_ -= bytes;

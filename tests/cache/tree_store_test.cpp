@@ -17,7 +17,7 @@ class TreeStoreTest : public testing::Test {
  protected:
   TreeStoreTest() : scene_(test::BallsOnFloor(3, 90)), store_(*scene_, kPlenty, evicted_) {
     store_.Want(0);
-    store_.PlantWanted(kPlenty, [](size_t) { return true; });
+    store_.PlantWanted(/*now=*/1, kPlenty, [](size_t) { return true; });
   }
 
   SurfaceNode& Root() { return store_.Get(0)->cells().Root(0); }
