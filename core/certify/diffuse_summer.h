@@ -14,7 +14,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/certify/jet_shape.h"
 #include "core/tree/light_certifier.h"
 #include "core/tree/surface_chart.h"
 
@@ -60,7 +59,7 @@ class DiffuseSummer {
   // sum and may face the side.
   MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
                       std::vector<size_t>& lights) const;
-  MaybeSum SumOnCurve(const JetShape& shape, int patch, const SurfaceCell& cell,
+  MaybeSum SumOnCurve(const Object& receiver, int patch, const SurfaceCell& cell,
                       std::vector<size_t>& lights) const;
 
   const Scene& scene_;
