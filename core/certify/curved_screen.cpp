@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/trace/intersect.h"
 #include "core/trace/shade.h"
 
 namespace linetree {
@@ -27,6 +28,15 @@ CurvedScreen::CurvedScreen(const Shape& shape, int patch, const SurfaceCell& cel
     SetSphere(*sphere, patch, cell);
   } else {
     SetLateral(std::get<FrustumShape>(shape), patch, cell);
+  }
+}
+
+CurvedScreen::CurvedScreen(const TriangleShape& shape, const SurfaceChart::PlanarCell& cell,
+                           double turn) {
+  for (size_t place = 0; place < kPlaces; ++place) {
+    const Vec3d at = PlaceOf(place, {});
+    points_[place] = cell.corner + cell.eu * at.x + cell.ev * at.y;
+    normals_[place] = Normalized(OutwardNormal(shape, 0, points_[place])) * turn;
   }
 }
 

@@ -18,6 +18,8 @@ class CurvedScreen {
  public:
   // A cell of a sphere or of a frustum's lateral surface.
   CurvedScreen(const Shape& shape, int patch, const SurfaceCell& cell);
+  // A cell of a triangle with vertex normals, turned by 1 or -1.
+  CurvedScreen(const TriangleShape& shape, const SurfaceChart::PlanarCell& cell, double turn);
 
   // Whether the cell touches a cone's apex, where there is no normal: neither has a smaller one.
   bool HasApex() const { return has_apex_; }

@@ -15,8 +15,15 @@ namespace {
 
 constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
-// Of the height of a light above a plane, relative to the coordinates it comes from.
+// Of the height of a light above a plane, relative to the coordinates it comes from: 6 u for the
+// cell's middle, 1 for the segment, 3 for the product, and as many once more for the tracer's own,
+// whose unit normal has 2.5; together 23 u, and 32 are allowed for. No sum shows them: lights are
+// taken from a height of kLengthMargin on, where this is 2^-18, as much as kNodeRounding, and
+// nearly all of that is allowance for sums in float.
 constexpr double kHeightRounding = 0x1p-48;
+// Cosine to the plane's normal: shading normals that lean more may lie on its other side at hits,
+// whose weights are negative by as little as hits lie beyond an edge.
+constexpr double kLeastLean = 0x1p-10;
 // Distances are trusted to this.
 constexpr double kLengthMargin = 0x1p-30;
 
@@ -45,11 +52,26 @@ struct SumBounds {
   }
 };
 
-// Unit; of a solid's or frustum's planar patch, as the tracer has it.
+// Unit; of a planar patch, as the tracer has it.
 Vec3d OutwardNormalOf(const Shape& shape, int patch) {
   const int face = std::holds_alternative<FrustumShape>(shape) ? patch - 4 + 1 : patch;
   return std::visit([&](const auto& s) { return Normalized(OutwardNormal(s, face, Vec3d{})); },
                     shape);
+}
+
+// By which the vertex normals have to be turned to lie on the side that the plane's normal points
+// to; 0 where they lie on both.
+double TurnOf(const TriangleShape& triangle, const Vec3d& normal) {
+  double turn = 0;
+  for (const Vec3d& n : triangle.normals) {
+    const double cosine = Dot(Normalized(n), normal);
+    // Also of what is not a number.
+    if (!(std::abs(cosine) > kLeastLean)) return 0;
+    const double sign = cosine > 0 ? 1 : -1;
+    if (turn != 0 && sign != turn) return 0;
+    turn = sign;
+  }
+  return turn;
 }
 
 std::array<float, 3> ToNode(const Rgb& sum) {
@@ -73,16 +95,23 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
   if (summable.size() < static_cast<size_t>(kMinSummedLights)) return;
   const size_t count = summable.size();
   const Object& receiver = scene_.objects[static_cast<size_t>(object)];
-  if (std::holds_alternative<TriangleShape>(receiver.shape)) return;  // the normal turns
   if (const auto plane = chart.PlanarCellOf(patch, cell)) {
-    if (chart.IsThin()) {
-      lights.sums = {SumOnPlane(*plane, plane->normal, summable),
-                     SumOnPlane(*plane, -plane->normal, summable)};
+    if (const auto* triangle = std::get_if<TriangleShape>(&receiver.shape)) {
+      const double turn = TurnOf(*triangle, plane->normal);
+      if (turn == 0) return;
+      lights.sums = {SumOnSmooth(receiver, *plane, turn, summable),
+                     SumOnSmooth(receiver, *plane, -turn, summable)};
+    } else if (chart.IsThin()) {
+      // The chart's own may differ from the tracer's by more than rounding, where it has been
+      // computed from edges at a small angle.
+      const Vec3d own = OutwardNormalOf(receiver.shape, patch);
+      const Vec3d normal = Dot(own, plane->normal) < 0 ? -own : own;
+      lights.sums = {SumOnPlane(*plane, normal, summable), SumOnPlane(*plane, -normal, summable)};
     } else {
       lights.sums[0] = SumOnPlane(*plane, OutwardNormalOf(receiver.shape, patch), summable);
     }
   } else {
-    lights.sums[0] = SumOnCurve(receiver, patch, cell, summable);
+    lights.sums[0] = SumOnCurve(receiver, chart.Slack(), patch, cell, summable);
   }
   lights.unsummed = static_cast<uint32_t>(count - summable.size());
   if (!lights.sums[0] && !lights.sums[1]) return;
@@ -229,7 +258,7 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
   return Finished(4, count, terms.Nodes().data(), bounds);
 }
 
-DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const Object& receiver, int patch,
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const Object& receiver, double slip, int patch,
                                                   const SurfaceCell& cell,
                                                   std::vector<size_t>& lights) const {
   const CurvedScreen screen(receiver.shape, patch, cell);
@@ -238,7 +267,24 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const Object& receiver, int pa
                 [&](size_t i) { return !screen.MayBeLinear(scene_.lights[i], kMaxTermSpread); });
   if (lights.empty()) return nullptr;
   const JetShape shape = MakeJetShape(receiver);
-  const CurvedTask task{scene_, shape, patch, cell, lights};
+  return SumOfTerms({scene_, shape, patch, cell, slip, lights}, lights);
+}
+
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnSmooth(const Object& receiver,
+                                                   const SurfaceChart::PlanarCell& plane,
+                                                   double turn, std::vector<size_t>& lights) const {
+  const CurvedScreen screen(std::get<TriangleShape>(receiver.shape), plane, turn);
+  std::erase_if(lights,
+                [&](size_t i) { return !screen.MayBeLinear(scene_.lights[i], kMaxTermSpread); });
+  if (lights.empty()) return nullptr;
+  const JetShape shape = MakeJetShape(receiver);
+  const SurfaceCell unused;
+  return SumOfTerms({scene_, shape, 0, unused, plane.pad, lights, &plane, turn}, lights);
+}
+
+// The task's lights are those.
+DiffuseSummer::MaybeSum DiffuseSummer::SumOfTerms(const CurvedTask& task,
+                                                  std::vector<size_t>& lights) const {
   std::vector<CurvedTerm> terms(lights.size());
   const bool is_valid = lanes_ == Lanes::kSimd ? FindCurvedTermsSimd(task, terms.data())
                                                : FindCurvedTermsScalar(task, terms.data());

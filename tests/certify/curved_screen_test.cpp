@@ -46,7 +46,9 @@ void Judge(const Scene& scene, test::Random& random, Judged& judged) {
     const SurfaceCell cell =
         CellAt({patch, random.Uniform(0, 1), random.Uniform(0, 1)}, random.Below(9));
     const CurvedScreen screen(shape, patch, cell);
-    if (!FindCurvedTermsScalar({scene, jet_shape, patch, cell, lights}, terms.data())) continue;
+    const CurvedTask task{scene, jet_shape, patch, cell, SurfaceChart(scene.objects[0]).Slack(),
+                          lights};
+    if (!FindCurvedTermsScalar(task, terms.data())) continue;
     EXPECT_FALSE(screen.HasApex());
     for (size_t i = 0; i < lights.size(); ++i) {
       const bool is_taken = terms[i].is_known && terms[i].error <= kMaxTermSpread * terms[i].least;
