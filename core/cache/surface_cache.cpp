@@ -64,11 +64,13 @@ std::vector<SurfaceCache::Work> SurfaceCache::CollectUsed(double weight, const T
     if (std::isinf(least(nullptr))) return;
     tree.cells().ForEach([&](SurfaceNode& node) {
       if (!node.IsLeaf()) return;
+      // What nobody has used is left alone: writing costs a cache line.
+      if (node.uses.load(std::memory_order_relaxed) == 0) return;
       const uint32_t uses = node.uses.exchange(0, std::memory_order_relaxed);
-      if (uses > 0 && !thrift.ahead && node.ahead.exchange(false, std::memory_order_relaxed)) {
+      if (!thrift.ahead && node.ahead.exchange(false, std::memory_order_relaxed)) {
         ++ahead_.used;
       }
-      if (uses < thrift.least_uses || uses == 0) return;
+      if (uses < thrift.least_uses) return;
       const CellLights* known = node.payload.get();
       if (known != nullptr && !HasEnough(uses * weight, *known)) return;
       if (uses * weight < least(known)) return;

@@ -19,13 +19,20 @@ struct CurvedTerm {
   std::array<double, 4> corners{};
 };
 
-// A cell of a sphere or of a frustum's lateral surface, and the lights that are asked for.
+// A cell of a sphere, of a frustum's lateral surface or of a triangle with vertex normals, and the
+// lights that are asked for.
 struct CurvedTask {
   const Scene& scene;
   const JetShape& shape;
   int patch;
   const SurfaceCell& cell;
+  // World length: hits are this close to the surface point with the same coordinates, and half as
+  // far from a curved surface.
+  double slip;
   std::span<const size_t> lights;
+  // Of a triangle: its cell, and 1 or -1, by which its own shading normal is turned.
+  const SurfaceChart::PlanarCell* plane = nullptr;
+  double turn = 1;
 };
 
 // One term for every light; false: the surface does not have a normal everywhere on the cell. Both

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/certify/curved_screen.h"
 #include "core/certify/curved_terms.h"
 #include "core/certify/fading.h"
 #include "core/certify/plane_nodes.h"
@@ -14,8 +15,15 @@ namespace {
 
 constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
-// Of the height of a light above a plane, relative to the coordinates it comes from.
+// Of the height of a light above a plane, relative to the coordinates it comes from: 6 u for the
+// cell's middle, 1 for the segment, 3 for the product, and as many once more for the tracer's own,
+// whose unit normal has 2.5; together 23 u, and 32 are allowed for. No sum shows them: lights are
+// taken from a height of kLengthMargin on, where this is 2^-18, as much as kNodeRounding, and
+// nearly all of that is allowance for sums in float.
 constexpr double kHeightRounding = 0x1p-48;
+// Cosine to the plane's normal: shading normals that lean more may lie on its other side at hits,
+// whose weights are negative by as little as hits lie beyond an edge.
+constexpr double kLeastLean = 0x1p-10;
 // Distances are trusted to this.
 constexpr double kLengthMargin = 0x1p-30;
 
@@ -44,6 +52,28 @@ struct SumBounds {
   }
 };
 
+// Unit; of a planar patch, as the tracer has it.
+Vec3d OutwardNormalOf(const Shape& shape, int patch) {
+  const int face = std::holds_alternative<FrustumShape>(shape) ? patch - 4 + 1 : patch;
+  return std::visit([&](const auto& s) { return Normalized(OutwardNormal(s, face, Vec3d{})); },
+                    shape);
+}
+
+// By which the vertex normals have to be turned to lie on the side that the plane's normal points
+// to; 0 where they lie on both.
+double TurnOf(const TriangleShape& triangle, const Vec3d& normal) {
+  double turn = 0;
+  for (const Vec3d& n : triangle.normals) {
+    const double cosine = Dot(Normalized(n), normal);
+    // Also of what is not a number.
+    if (!(std::abs(cosine) > kLeastLean)) return 0;
+    const double sign = cosine > 0 ? 1 : -1;
+    if (turn != 0 && sign != turn) return 0;
+    turn = sign;
+  }
+  return turn;
+}
+
 std::array<float, 3> ToNode(const Rgb& sum) {
   return {static_cast<float>(sum.r), static_cast<float>(sum.g), static_cast<float>(sum.b)};
 }
@@ -64,19 +94,24 @@ void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
   std::vector<size_t> summable = Summable(lights);
   if (summable.size() < static_cast<size_t>(kMinSummedLights)) return;
   const size_t count = summable.size();
-  const JetShape shape = MakeJetShape(scene_.objects[static_cast<size_t>(object)]);
-  if (!shape.corner_normals.empty()) return;  // the normal turns: one by one
+  const Object& receiver = scene_.objects[static_cast<size_t>(object)];
   if (const auto plane = chart.PlanarCellOf(patch, cell)) {
-    if (shape.IsThin()) {
-      lights.sums = {SumOnPlane(*plane, plane->normal, summable),
-                     SumOnPlane(*plane, -plane->normal, summable)};
+    if (const auto* triangle = std::get_if<TriangleShape>(&receiver.shape)) {
+      const double turn = TurnOf(*triangle, plane->normal);
+      if (turn == 0) return;
+      lights.sums = {SumOnSmooth(receiver, *plane, turn, summable),
+                     SumOnSmooth(receiver, *plane, -turn, summable)};
+    } else if (chart.IsThin()) {
+      // The chart's own may differ from the tracer's by more than rounding, where it has been
+      // computed from edges at a small angle.
+      const Vec3d own = OutwardNormalOf(receiver.shape, patch);
+      const Vec3d normal = Dot(own, plane->normal) < 0 ? -own : own;
+      lights.sums = {SumOnPlane(*plane, normal, summable), SumOnPlane(*plane, -normal, summable)};
     } else {
-      const bool has_lateral = shape.kind == JetShape::Kind::kFrustum;
-      const int face = has_lateral ? patch - 4 + 1 : patch;
-      lights.sums[0] = SumOnPlane(*plane, shape.PlaneOf(face)->normal, summable);
+      lights.sums[0] = SumOnPlane(*plane, OutwardNormalOf(receiver.shape, patch), summable);
     }
   } else {
-    lights.sums[0] = SumOnCurve(shape, patch, cell, summable);
+    lights.sums[0] = SumOnCurve(receiver, chart.Slack(), patch, cell, summable);
   }
   lights.unsummed = static_cast<uint32_t>(count - summable.size());
   if (!lights.sums[0] && !lights.sums[1]) return;
@@ -90,14 +125,17 @@ double SumOfSizes(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::
 // A cell of a plane, as lights in front of it see it.
 class PlaneTerms {
  public:
-  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal, size_t most_lights)
+  // `points` is room for the lamps that do not fade.
+  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
+             std::vector<NodeLight>& points)
       : normal_(normal),
         center_(cell.corner + (cell.eu + cell.ev) * 0.5),
         radius_(std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2),
         reach_(SumOfSizes(center_) + radius_),
         slip_(2 * cell.pad),
-        stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)) {
-    points_.reserve(most_lights);
+        stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)),
+        points_(points) {
+    points_.clear();
     for (size_t k = 0; k < kPlaneNodes; ++k) {
       const Vec3d place = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
                           cell.ev * (static_cast<double>(k / 4) / 3);
@@ -142,8 +180,11 @@ class PlaneTerms {
   }
 
   Taken AddPoint(const Light& light, SumBounds& bounds) {
-    const double height = Dot(light.position - center_, normal_);
-    const double distance = Length(light.position - center_);
+    const Vec3d away = light.position - center_;
+    const double height = Dot(away, normal_);
+    // Most lights that are behind are so by far, which needs no root.
+    if (height <= -(slip_ + kLengthMargin * (SumOfSizes(away) + radius_))) return Taken::kBehind;
+    const double distance = Length(away);
     const double least_height = std::max(slip_, kLengthMargin * (distance + radius_));
     if (height <= -least_height) return Taken::kBehind;
     // Of a light in the plane itself rounding says which side it is on.
@@ -177,7 +218,7 @@ class PlaneTerms {
   const double slip_;
   const double stretch_;
   NodePlaces places_;
-  std::vector<NodeLight> points_;
+  std::vector<NodeLight>& points_;
   struct FadingLight {
     const Light* light;
     Rgb strength;
@@ -203,7 +244,9 @@ std::unique_ptr<const DiffuseSum> Finished(int node_count, size_t count, const R
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell& cell,
                                                   const Vec3d& normal,
                                                   std::vector<size_t>& lights) const {
-  PlaneTerms terms(cell, normal, lights.size());
+  // Room that the sums of this thread use one after the other.
+  thread_local std::vector<NodeLight> points;
+  PlaneTerms terms(cell, normal, points);
   SumBounds bounds;
   size_t count = 0;
   std::erase_if(lights, [&](size_t i) {
@@ -215,10 +258,33 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
   return Finished(4, count, terms.Nodes().data(), bounds);
 }
 
-DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const JetShape& shape, int patch,
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const Object& receiver, double slip, int patch,
                                                   const SurfaceCell& cell,
                                                   std::vector<size_t>& lights) const {
-  const CurvedTask task{scene_, shape, patch, cell, lights};
+  const CurvedScreen screen(receiver.shape, patch, cell);
+  if (screen.HasApex()) return nullptr;
+  std::erase_if(lights,
+                [&](size_t i) { return !screen.MayBeLinear(scene_.lights[i], kMaxTermSpread); });
+  if (lights.empty()) return nullptr;
+  const JetShape shape = MakeJetShape(receiver);
+  return SumOfTerms({scene_, shape, patch, cell, slip, lights}, lights);
+}
+
+DiffuseSummer::MaybeSum DiffuseSummer::SumOnSmooth(const Object& receiver,
+                                                   const SurfaceChart::PlanarCell& plane,
+                                                   double turn, std::vector<size_t>& lights) const {
+  const CurvedScreen screen(std::get<TriangleShape>(receiver.shape), plane, turn);
+  std::erase_if(lights,
+                [&](size_t i) { return !screen.MayBeLinear(scene_.lights[i], kMaxTermSpread); });
+  if (lights.empty()) return nullptr;
+  const JetShape shape = MakeJetShape(receiver);
+  const SurfaceCell unused;
+  return SumOfTerms({scene_, shape, 0, unused, plane.pad, lights, &plane, turn}, lights);
+}
+
+// The task's lights are those.
+DiffuseSummer::MaybeSum DiffuseSummer::SumOfTerms(const CurvedTask& task,
+                                                  std::vector<size_t>& lights) const {
   std::vector<CurvedTerm> terms(lights.size());
   const bool is_valid = lanes_ == Lanes::kSimd ? FindCurvedTermsSimd(task, terms.data())
                                                : FindCurvedTermsScalar(task, terms.data());

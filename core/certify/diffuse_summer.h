@@ -8,13 +8,15 @@
 // Lambda = 1.64 bounding the sum of the absolute weights of four equidistant nodes, which pass the
 // error along the one axis on to the other. For lamps that fade with distance: fading.h.
 //
-// Spheres and frustums: bilinear, with the bound of corner jets of dimension 2.
+// Spheres, frustums and triangles with vertex normals: bilinear, with the bound of corner jets of
+// dimension 2 (curved_cell-inl.h). The tracer turns a triangle's interpolated normal against the
+// ray and asks nothing else, so that its two sides are those of the plane as long as all three
+// vertex normals are on the same side of it; others are left alone.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "core/certify/jet_shape.h"
 #include "core/tree/light_certifier.h"
 #include "core/tree/surface_chart.h"
 
@@ -34,6 +36,8 @@ inline constexpr double kMaxTermSpread = 1.0 / 64;
 // each of which the polynomial changes by at most 9 times its largest node: 33 of 2^-24, rounded up
 // to 64. In double, of which only the first part is seen, no more than a 24th of it is used.
 inline constexpr double kNodeRounding = 0x1p-18;
+
+struct CurvedTask;
 
 class DiffuseSummer {
  public:
@@ -60,8 +64,12 @@ class DiffuseSummer {
   // sum and may face the side.
   MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
                       std::vector<size_t>& lights) const;
-  MaybeSum SumOnCurve(const JetShape& shape, int patch, const SurfaceCell& cell,
+  MaybeSum SumOnCurve(const Object& receiver, double slip, int patch, const SurfaceCell& cell,
                       std::vector<size_t>& lights) const;
+  // The same for a triangle with vertex normals, which `turn` (1 or -1) turns to the side.
+  MaybeSum SumOnSmooth(const Object& receiver, const SurfaceChart::PlanarCell& plane, double turn,
+                       std::vector<size_t>& lights) const;
+  MaybeSum SumOfTerms(const CurvedTask& task, std::vector<size_t>& lights) const;
 
   const Scene& scene_;
   const Lanes lanes_;

@@ -246,6 +246,7 @@ KeptSurfaceCell DecodeSurfaceCell(const Scene& scene, ByteReader& in) {
   lights->contacts.shrink_to_fit();
   lights->functions.shrink_to_fit();
   lights->shadows = {lights->objects.data(), lights->functions.data(), lights->coefficients.data()};
+  lights->Weigh();
   lights->MakeTasks(scene);
   cell.lights = std::move(lights);
   return cell;

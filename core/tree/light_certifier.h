@@ -102,8 +102,10 @@ struct CellLights {
   bool WantsSmaller() const { return unsummed >= kMinUnsummed || !IsDecided(); }
   // Of such a cell: how many times as many points it takes before that is worth its price as where
   // candidates have to be tested. Shadow functions answer at little cost, so what matters is how
-  // many lights a division could decide, against the price of four cells.
+  // many lights a division could decide, against the price of four cells. 1 at least.
   double Patience() const;
+  // Finds out what Patience needs, when what is known of the lights and the functions are final.
+  void Weigh();
   // Sets `tasks`, when all else is final.
   void MakeTasks(const Scene& scene);
   // Whether what is said holds at a point of the piece.
@@ -116,6 +118,10 @@ struct CellLights {
  private:
   // Whether rays are tested against objects for this light, which is one of `lights`.
   bool IsTested(const LightList& list) const;
+
+  // Of `lights`: those that are on, those that are undecided, whether some are tested.
+  uint32_t on_ = 0, undecided_ = 0;
+  bool is_tested_ = false;
 };
 
 // What arrives of one light at all points of a hull.
@@ -123,6 +129,9 @@ struct LightArrival {
   LightKnowledge knowledge = LightKnowledge::kUnknown;
   Rgb filter{1, 1, 1};  // kOn: what is left by transparent objects, which every shadow ray crosses
 };
+
+class LightBundle;
+struct LightFindings;
 
 class LightCertifier {
  public:
@@ -142,31 +151,28 @@ class LightCertifier {
   LightArrival ArrivalOf(int object, const PatchHull& hull, int light) const;
 
  private:
-  struct Bundle;
-  struct Findings;
-
-  // One light of findings.cell.
-  void CertifyLight(const Bundle& bundle, const LightList& inherited, Findings& findings) const;
+  // One light of the cell; what is found out is added to `findings`.
+  LightList CertifyLight(LightBundle& bundle, const LightList& inherited,
+                         LightFindings& findings) const;
   // What may block, as FindCandidates left it, decides.
-  LightKnowledge Decide(const Bundle& bundle, Findings& findings) const;
-  void FindCandidates(const Bundle& bundle, const LightList& inherited, Findings& findings) const;
-  bool KeepsMeeting(const Bundle& bundle, size_t index, Findings& findings) const;
-  bool MayBlock(const Bundle& bundle, int object, Findings& findings) const;
+  LightKnowledge Decide(const LightBundle& bundle, LightFindings& findings) const;
+  void FindCandidates(LightBundle& bundle, const LightList& inherited,
+                      LightFindings& findings) const;
+  bool KeepsMeeting(LightBundle& bundle, size_t index, LightFindings& findings) const;
+  bool MayBlock(LightBundle& bundle, int object, LightFindings& findings) const;
   // Whether the object lies behind a plane that the light and the hull are in front of, but for
   // contacts.
-  bool LiesBehind(const Bundle& bundle, int object, Findings& findings) const;
+  bool LiesBehind(LightBundle& bundle, int object, LightFindings& findings) const;
   // What the object's shadow function says, which is built if there is one.
-  CellShadow ShadowOf(const Bundle& bundle, int object, Findings& findings) const;
-  // `begins`: where the candidates of each light begin.
-  static void Finish(const std::vector<size_t>& begins, CellLights& cell);
+  CellShadow ShadowOf(LightBundle& bundle, int object, LightFindings& findings) const;
   // World length.
-  double ClearanceTo(const Bundle& bundle, int object) const;
+  double ClearanceTo(LightBundle& bundle, int object) const;
   // Whether the shadow rays of all points of the hull cross the object.
-  bool IsCrossedByAll(const Bundle& bundle, int object) const;
+  bool IsCrossedByAll(const LightBundle& bundle, int object) const;
   // How often they all do; 0 where that is not certain.
-  int CrossingsOfAll(const Bundle& bundle, int object) const;
+  int CrossingsOfAll(LightBundle& bundle, int object) const;
   // Whether the object hides the light from every point of the hull.
-  bool HidesAll(const Bundle& bundle, int object) const;
+  bool HidesAll(const LightBundle& bundle, int object) const;
 
   const Tracer& tracer_;
   const Scene& scene_;

@@ -29,47 +29,70 @@ bool CellLights::IsTested(const LightList& list) const {
                      [](const ShadowFunction& function) { return function.pieces == 0; });
 }
 
-double CellLights::Patience() const {
-  double on = 0, alone = kUnsummedCost * unsummed;
+void CellLights::Weigh() {
+  on_ = undecided_ = 0;
+  is_tested_ = false;
   for (const LightList& list : lights) {
-    if (IsTested(list)) return 1;
-    on += list.knowledge == LightKnowledge::kOn ? 1 : 0;
-    alone += list.IsDecided() ? 0 : 1;
+    on_ += list.knowledge == LightKnowledge::kOn ? 1 : 0;
+    if (list.IsDecided()) continue;
+    ++undecided_;
+    is_tested_ = is_tested_ || IsTested(list);
   }
-  return kAnsweredShare * (1 + (kCellPrice + kOnPrice * on) / std::max(alone, 1.0));
 }
 
+double CellLights::Patience() const {
+  if (is_tested_) return 1;
+  const double gain = undecided_ + kUnsummedCost * unsummed;
+  return kAnsweredShare * (1 + (kCellPrice + kOnPrice * on_) / std::max(gain, 1.0));
+}
+
+namespace {
+
+LightTask::Kind KindOf(const LightList& list, const Scene& scene) {
+  switch (list.knowledge) {
+    case LightKnowledge::kOff:
+    case LightKnowledge::kFacingAway:
+    case LightKnowledge::kUnknown:
+      break;
+    case LightKnowledge::kOn:
+      return list.summed ? LightTask::Kind::kSummed : LightTask::Kind::kOn;
+    case LightKnowledge::kListed:
+      // What several filters leave depends on the order in which they are met.
+      if (std::all_of(list.candidates.begin(), list.candidates.end(),
+                      [&](int32_t object) { return IsBlack(scene.MaterialOf(object).transmit); })) {
+        return LightTask::Kind::kListed;
+      }
+      break;
+  }
+  return LightTask::Kind::kUnknown;
+}
+
+bool MayReach(const LightList& list) {
+  return list.knowledge != LightKnowledge::kOff && list.knowledge != LightKnowledge::kFacingAway;
+}
+
+}  // namespace
+
 void CellLights::MakeTasks(const Scene& scene) {
-  const auto is_opaque = [&](int32_t object) { return IsBlack(scene.MaterialOf(object).transmit); };
-  tasks.clear();
+  size_t count = 0, summed = 0;
+  for (const LightList& list : lights) {
+    count += MayReach(list) ? 1 : 0;
+    summed += list.knowledge == LightKnowledge::kOn && list.summed ? 1 : 0;
+  }
+  tasks.assign(count, LightTask{});
+  rest_of_tasks = static_cast<uint32_t>(count - summed);
+  size_t next_rest = 0, next_summed = rest_of_tasks;
   for (size_t i = 0; i < lights.size(); ++i) {
     const LightList& list = lights[i];
-    LightTask task;
+    if (!MayReach(list)) continue;
+    const LightTask::Kind kind = KindOf(list, scene);
+    LightTask& task = tasks[kind == LightTask::Kind::kSummed ? next_summed++ : next_rest++];
+    task.kind = kind;
     task.light = static_cast<uint16_t>(i);
-    switch (list.knowledge) {
-      case LightKnowledge::kOff:
-      case LightKnowledge::kFacingAway:
-        continue;
-      case LightKnowledge::kUnknown:
-        break;
-      case LightKnowledge::kOn:
-        task.kind = list.summed ? LightTask::Kind::kSummed : LightTask::Kind::kOn;
-        break;
-      case LightKnowledge::kListed:
-        // What several filters leave depends on the order in which they are met.
-        if (!std::all_of(list.candidates.begin(), list.candidates.end(), is_opaque)) break;
-        task.kind = LightTask::Kind::kListed;
-        task.first = static_cast<uint32_t>(list.candidates.data() - objects.data());
-        task.count = static_cast<uint32_t>(list.candidates.size());
-        break;
-    }
-    tasks.push_back(task);
+    if (kind != LightTask::Kind::kListed) continue;
+    task.first = static_cast<uint32_t>(list.candidates.data() - objects.data());
+    task.count = static_cast<uint32_t>(list.candidates.size());
   }
-  const auto rest = std::stable_partition(tasks.begin(), tasks.end(), [](const LightTask& task) {
-    return task.kind != LightTask::Kind::kSummed;
-  });
-  rest_of_tasks = static_cast<uint32_t>(rest - tasks.begin());
-  tasks.shrink_to_fit();
 }
 
 }  // namespace linetree

@@ -58,7 +58,10 @@ class Builder {
     const Height plane = Facing(HeightAbove(planes_.faces[0]));
     if (!plane.FacesLight()) return false;
     forms_.Add(plane.at, plane.error);
-    for (const Plane& edge : planes_.edges) AddPencil(HeightAbove(edge), plane);
+    for (const Plane& edge : planes_.edges) {
+      if (forms_.PieceMisses()) break;
+      AddPencil(HeightAbove(edge), plane);
+    }
     forms_.EndPiece();
     return true;
   }
@@ -118,16 +121,19 @@ class Builder {
 
 bool Builder::AddPolyhedron() {
   if (planes_.faces.size() > kMaxFunctionFaces) return false;
-  std::array<Height, kMaxFunctionFaces> facing, others;
-  size_t facing_count = 0, other_count = 0;
+  // The light's side from the front, the others from the back.
+  std::array<Height, kMaxFunctionFaces> heights;
+  size_t facing = 0, others = heights.size();
   for (const Plane& face : planes_.faces) {
     const Height height = HeightAbove(face);
-    (height.FacesLight() ? facing[facing_count++] : others[other_count++]) = height;
+    heights[height.FacesLight() ? facing++ : --others] = height;
   }
-  if (facing_count == 0) return false;
-  for (size_t i = 0; i < facing_count; ++i) {
-    forms_.Add(facing[i].at, facing[i].error);
-    for (size_t j = 0; j < other_count; ++j) AddPencil(others[j], facing[i]);
+  if (facing == 0) return false;
+  for (size_t i = 0; i < facing && !forms_.PieceMisses(); ++i) {
+    forms_.Add(heights[i].at, heights[i].error);
+    for (size_t j = heights.size(); j-- > others && !forms_.PieceMisses();) {
+      AddPencil(heights[j], heights[i]);
+    }
   }
   forms_.EndPiece();
   return true;

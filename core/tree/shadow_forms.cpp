@@ -1,6 +1,7 @@
 #include "core/tree/shadow_forms.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace linetree {
 namespace {
@@ -13,30 +14,26 @@ constexpr double kMostForm = 0x1p100;
 // rounds by far less than one.
 constexpr double kCut = 2;
 
-// Linear forms of a piece.
-constexpr uint8_t kMaxLines = 72;
-
 using Corner = std::array<double, 2>;
-// A convex polygon has at most one corner more after each cut.
-constexpr size_t kMaxCorners = 4 + kMaxLines;
-
 }  // namespace
-
-Extent ExtentOf(const Affine& form) {
-  return {form.c + std::min(form.s, 0.0) + std::min(form.t, 0.0),
-          form.c + std::max(form.s, 0.0) + std::max(form.t, 0.0)};
-}
 
 Extent ExtentOf(const Quadratic& form) {
   const auto& [c, s, t, ss, st, tt] = form.k;
+  // Bernstein's coefficients: the corners, the middles of the sides, and the middle.
+  const double right = c + s + ss, top = c + t + tt;
+  const std::array<double, 9> values{c,
+                                     c + s / 2,
+                                     right,
+                                     c + t / 2,
+                                     c + (s + t) / 2 + st / 4,
+                                     right + t / 2 + st / 2,
+                                     top,
+                                     top + s / 2 + st / 2,
+                                     right + t + tt + st};
   Extent extent{c, c};
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      const double value =
-          c + (s * i + t * j) / 2 + st * (i * j) / 4 + (i == 2 ? ss : 0) + (j == 2 ? tt : 0);
-      extent.low = std::min(extent.low, value);
-      extent.high = std::max(extent.high, value);
-    }
+  for (const double value : values) {
+    extent.low = std::min(extent.low, value);
+    extent.high = std::max(extent.high, value);
   }
   return extent;
 }
@@ -53,26 +50,33 @@ bool ShadowForms::IsNeeded(const Extent& extent, double bound, double& margin) {
   return IsNeeded(extent, margin);
 }
 
-void ShadowForms::Push(const double* form, size_t size, double margin) {
-  if (size == kLinearSize && piece_lines_ == kMaxLines) {
-    is_valid_ = false;
-    return;
+template <size_t kSize>
+void ShadowForms::Push(const std::array<double, kSize>& form) {
+  if constexpr (kSize == kLinearSize) {
+    if (piece_lines_ == kMaxLines) {
+      is_valid_ = false;
+      return;
+    }
+    ++piece_lines_;
+  } else {
+    piece_squared_ = true;
   }
-  if (size == kLinearSize) ++piece_lines_;
-  piece_squared_ = piece_squared_ || size == kQuadraticSize;
-  for (size_t i = 0; i < size; ++i) coefficients_.push_back(static_cast<float>(form[i] / margin));
+  for (size_t i = 0; i < kSize; ++i) forms_[size_ + i] = static_cast<float>(form[i]);
+  size_ += kSize;
 }
 
 void ShadowForms::Add(const Affine& form, double margin) {
   if (!IsNeeded(ExtentOf(form), form.Bound(), margin)) return;
-  const std::array<double, kLinearSize> k{form.c, form.s, form.t};
-  Push(k.data(), k.size(), margin);
+  Push<kLinearSize>({form.c / margin, form.s / margin, form.t / margin});
 }
 
 void ShadowForms::Add(const Quadratic& form, double margin) {
   double bound = 0;
   for (const double k : form.k) bound += std::abs(k);
-  if (IsNeeded(ExtentOf(form), bound, margin)) Push(form.k.data(), form.k.size(), margin);
+  if (!IsNeeded(ExtentOf(form), bound, margin)) return;
+  std::array<double, kQuadraticSize> k = form.k;
+  for (double& x : k) x /= margin;
+  Push(k);
 }
 
 // s = (s' + i) / 2 with i of 0 and 1, and t likewise.
@@ -84,47 +88,74 @@ void ShadowForms::AddQuarter(const ShadowFunction& function, const float* coeffi
     for (size_t line = 0; line < function.lines[piece]; ++line, k += kLinearSize) {
       const double s = at(1) / 2, t = at(2) / 2;
       const std::array<double, kLinearSize> form{at(0) + s * i + t * j, s, t};
-      if (IsNeeded(ExtentOf(Affine{form[0], s, t}), 1)) Push(form.data(), form.size(), 1);
+      if (IsNeeded(ExtentOf(Affine{form[0], s, t}), 1)) Push(form);
+      if (piece_misses_) {
+        k += static_cast<size_t>(function.lines[piece] - line) * kLinearSize;
+        break;
+      }
     }
-    if ((function.squares >> piece & 1) != 0) {
+    const bool is_square = (function.squares >> piece & 1) != 0;
+    if (is_square && !piece_misses_) {
       const double s = at(1) / 2, t = at(2) / 2, ss = at(3) / 4, st = at(4) / 4, tt = at(5) / 4;
       const Quadratic form{{at(0) + s * i + t * j + ss * i + st * i * j + tt * j,
                             s + 2 * ss * i + st * j, t + st * i + 2 * tt * j, ss, st, tt}};
-      if (IsNeeded(ExtentOf(form), 1)) Push(form.k.data(), form.k.size(), 1);
-      k += kQuadraticSize;
+      if (IsNeeded(ExtentOf(form), 1)) Push(form.k);
     }
+    if (is_square) k += kQuadraticSize;
     EndPiece();
   }
 }
 
-// Cuts the square by all linear forms of the piece.
+// Most pieces hold a corner of the square, which is quickly seen: it would survive all cuts.
 bool ShadowForms::IsEmpty() const {
   if (piece_lines_ < 2) return false;
-  std::array<Corner, kMaxCorners> corners, kept;
+  bool is_kept[4] = {true, true, true, true};
+  const float* k = forms_.data() + piece_begin_;
+  for (uint8_t line = 0; line < piece_lines_; ++line, k += kLinearSize) {
+    const double c = static_cast<double>(k[0]), s = static_cast<double>(k[1]),
+                 t = static_cast<double>(k[2]);
+    is_kept[0] = is_kept[0] && c <= kCut;
+    is_kept[1] = is_kept[1] && c + s <= kCut;
+    is_kept[2] = is_kept[2] && c + s + t <= kCut;
+    is_kept[3] = is_kept[3] && c + t <= kCut;
+  }
+  return !(is_kept[0] || is_kept[1] || is_kept[2] || is_kept[3]) && IsCutAway();
+}
+
+// Cuts the square by all linear forms of the piece.
+bool ShadowForms::IsCutAway() const {
+  // A convex polygon has at most one corner more after each cut.
+  constexpr size_t kMaxCorners = 4 + kMaxLines;
+  std::array<std::array<Corner, kMaxCorners>, 2> buffers;
+  Corner *corners = buffers[0].data(), *kept = buffers[1].data();
   corners[0] = {0, 0};
   corners[1] = {1, 0};
   corners[2] = {1, 1};
   corners[3] = {0, 1};
   size_t count = 4;
-  const float* k = coefficients_.data() + piece_begin_;
+  const float* k = forms_.data() + piece_begin_;
   for (uint8_t line = 0; line < piece_lines_; ++line, k += kLinearSize) {
     const auto value = [&](const Corner& x) {
       return static_cast<double>(k[0]) + static_cast<double>(k[1]) * x[0] +
              static_cast<double>(k[2]) * x[1] - kCut;
     };
     size_t left = 0;
+    const double first = value(corners[0]);
+    double at_a = first;
     for (size_t i = 0; i < count; ++i) {
-      const Corner &a = corners[i], &b = corners[(i + 1) % count];
-      const double at_a = value(a), at_b = value(b);
+      const bool is_last = i + 1 == count;
+      const Corner &a = corners[i], &b = corners[is_last ? 0 : i + 1];
+      const double at_b = is_last ? first : value(b);
       if (left + 2 > kMaxCorners) return false;  // only by rounding
       if (at_a <= 0) kept[left++] = a;
       if ((at_a <= 0) != (at_b <= 0)) {
         const double share = at_a / (at_a - at_b);
         kept[left++] = {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share};
       }
+      at_a = at_b;
     }
     if (left == 0) return true;
-    std::copy_n(kept.begin(), left, corners.begin());
+    std::swap(corners, kept);
     count = left;
   }
   return false;
@@ -133,7 +164,7 @@ bool ShadowForms::IsEmpty() const {
 void ShadowForms::EndPiece() {
   if (is_valid_) {
     if (piece_misses_ || IsEmpty()) {
-      coefficients_.resize(piece_begin_);
+      size_ = piece_begin_;
     } else if (piece_lines_ == 0 && !piece_squared_) {
       blocks_ = true;
     } else {
@@ -143,13 +174,12 @@ void ShadowForms::EndPiece() {
       function_.lines[function_.pieces++] = piece_lines_;
     }
   }
-  piece_begin_ = coefficients_.size();
+  piece_begin_ = size_;
   piece_lines_ = 0;
   piece_squared_ = piece_misses_ = false;
 }
 
 bool ShadowForms::Finish(Shadowing& everywhere, ShadowFunction& function) {
-  if (!is_valid_ || blocks_ || function_.pieces == 0) coefficients_.resize(begin_);
   if (!is_valid_) return false;
   function = {};
   if (blocks_ || function_.pieces == 0) {
@@ -158,7 +188,9 @@ bool ShadowForms::Finish(Shadowing& everywhere, ShadowFunction& function) {
   }
   everywhere = Shadowing::kUnknown;
   function = function_;
-  function.begin = static_cast<uint32_t>(begin_);
+  function.begin = static_cast<uint32_t>(coefficients_.size());
+  coefficients_.insert(coefficients_.end(), forms_.begin(),
+                       forms_.begin() + static_cast<std::ptrdiff_t>(size_));
   return true;
 }
 

@@ -2,6 +2,7 @@
 // them: drops what is decided everywhere.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -49,7 +50,10 @@ inline Quadratic Square(const Affine& a) { return Product(a, a); }
 struct Extent {
   double low, high;
 };
-Extent ExtentOf(const Affine& form);
+inline Extent ExtentOf(const Affine& form) {
+  return {form.c + std::min(form.s, 0.0) + std::min(form.t, 0.0),
+          form.c + std::max(form.s, 0.0) + std::max(form.t, 0.0)};
+}
 Extent ExtentOf(const Quadratic& form);
 
 inline constexpr int kMaxQuarterings = 8;
@@ -62,14 +66,16 @@ inline constexpr double kFormRounding = 0x1p-19;
 // Adds the pieces of one object's shadow to `coefficients`.
 class ShadowForms {
  public:
-  explicit ShadowForms(std::vector<float>& coefficients)
-      : coefficients_(coefficients), begin_(coefficients.size()), piece_begin_(begin_) {}
+  explicit ShadowForms(std::vector<float>& coefficients) : coefficients_(coefficients) {}
 
   // The forms of a piece, the linear ones first; the object is not in the way where one is above
   // its margin, and is where all are below minus theirs.
   void Add(const Affine& form, double margin);
   void Add(const Quadratic& form, double margin);
   void EndPiece();
+  // Whether one of the piece's forms has said already that the object is nowhere in the way: the
+  // others need not be added.
+  bool PieceMisses() const { return piece_misses_; }
 
   // All pieces of a function over a square, as they are over a quarter of it: bit 0 of `child`, the
   // upper half in s; bit 1, in t. Each time adds one rounding to floats, relative to the sum of the
@@ -85,12 +91,18 @@ class ShadowForms {
   bool IsNeeded(const Extent& extent, double margin);
   // The same for one in double, whose margin gets the rounding of floats added.
   bool IsNeeded(const Extent& extent, double bound, double& margin);
-  void Push(const double* form, size_t size, double margin);
+  template <size_t kSize>
+  void Push(const std::array<double, kSize>& form);
   bool IsEmpty() const;
+  bool IsCutAway() const;
+
+  // Linear forms of a piece.
+  static constexpr uint8_t kMaxLines = 72;
 
   std::vector<float>& coefficients_;
-  const size_t begin_;
-  size_t piece_begin_;
+  // Those of all pieces so far; what lies beyond size_ is not set.
+  std::array<float, kMaxShadowPieces*(kMaxLines* kLinearSize + kQuadraticSize)> forms_;
+  size_t size_ = 0, piece_begin_ = 0;
   ShadowFunction function_;
   uint8_t piece_lines_ = 0;
   bool piece_squared_ = false;

@@ -5,19 +5,13 @@
 namespace linetree {
 namespace {
 
-// Largest and smallest n.x over a box.
-double Sup(const Box3& b, const Vec3d& n) {
-  return (n.x > 0 ? b.max.x : b.min.x) * n.x + (n.y > 0 ? b.max.y : b.min.y) * n.y +
-         (n.z > 0 ? b.max.z : b.min.z) * n.z;
+// Of ni x_i + nj x_j over a box: the largest value, and what bounds all of it for rounding.
+double Sup(const Box3& b, int i, int j, double ni, double nj) {
+  return (ni > 0 ? b.max[i] : b.min[i]) * ni + (nj > 0 ? b.max[j] : b.min[j]) * nj;
 }
-double Inf(const Box3& b, const Vec3d& n) { return -Sup(b, -n); }
-
-double Magnitude(const Box3& b, const Vec3d& n) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    sum += std::abs(n[i]) * std::max(std::abs(b.min[i]), std::abs(b.max[i]));
-  }
-  return sum;
+double Magnitude(const Box3& b, int i, int j, double ni, double nj) {
+  return std::abs(ni) * std::max(std::abs(b.min[i]), std::abs(b.max[i])) +
+         std::abs(nj) * std::max(std::abs(b.min[j]), std::abs(b.max[j]));
 }
 
 }  // namespace
@@ -36,17 +30,18 @@ Shaft::Shaft(const Box3& from, const Box3& to) : hull_bounds_(from) {
       const double di = pick(to, i, 1) - pick(from, i, 1);
       const double dj = pick(to, j, 2) - pick(from, j, 2);
       if (di == 0 || dj == 0) continue;  // axis-parallel: the bounding box has it
-      Vec3d n;
-      n[i] = -dj;
-      n[j] = di;
-      for (const Vec3d& normal : {n, -n}) {
-        // Tangent to both boxes iff the like corner is the supporting one.
-        const bool supports =
-            ((corner & 1) != 0) == (normal[i] > 0) && ((corner & 2) != 0) == (normal[j] > 0);
-        if (!supports) continue;
-        sides_[side_count_++] = {normal, std::max(Sup(from, normal), Sup(to, normal)),
-                                 Magnitude(hull_bounds_, normal)};
-      }
+      // Tangent to both boxes iff the like corner is the supporting one.
+      const bool is_right = (corner & 1) != 0, is_upper = (corner & 2) != 0;
+      const bool supports = is_right == (dj < 0) && is_upper == (di > 0);
+      const bool opposite_supports = is_right == (dj > 0) && is_upper == (di < 0);
+      if (!supports && !opposite_supports) continue;
+      const double ni = supports ? -dj : dj, nj = supports ? di : -di;
+      sides_[side_count_++] = {i,
+                               j,
+                               ni,
+                               nj,
+                               std::max(Sup(from, i, j, ni, nj), Sup(to, i, j, ni, nj)),
+                               Magnitude(hull_bounds_, i, j, ni, nj)};
     }
   }
 }
@@ -55,8 +50,9 @@ bool Shaft::Misses(const Box3& box) const {
   if (!hull_bounds_.Overlaps(box)) return true;
   const auto end = sides_.begin() + static_cast<std::ptrdiff_t>(side_count_);
   return std::any_of(sides_.begin(), end, [&](const HalfSpace& side) {
-    const double slack = kShaftRounding * (Magnitude(box, side.normal) + side.magnitude);
-    return Inf(box, side.normal) > side.offset + slack;
+    const auto& [i, j, ni, nj, offset, magnitude] = side;
+    const double slack = kShaftRounding * (Magnitude(box, i, j, ni, nj) + magnitude);
+    return -Sup(box, i, j, -ni, -nj) > offset + slack;
   });
 }
 

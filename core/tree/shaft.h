@@ -24,9 +24,10 @@ class Shaft {
   bool Misses(const Box3& box) const;
 
  private:
-  // normal.x <= offset on the hull.
+  // Across one axis: ni x_i + nj x_j <= offset on the hull.
   struct HalfSpace {
-    Vec3d normal;
+    int i, j;
+    double ni, nj;
     double offset;
     double magnitude;  // of the hull along the normal, for rounding
   };

@@ -34,7 +34,7 @@ struct Range {
   double low, high;
 };
 Range RangeOf(uint32_t index, int depth) {
-  const double width = std::ldexp(1.0, -depth);
+  const double width = 1.0 / static_cast<double>(uint32_t{1} << depth);
   return {index * width, (index + 1) * width};
 }
 
@@ -128,6 +128,7 @@ SurfaceChart::SurfaceChart(const Object& object)
       slack_(kSurfaceSlack * reach_),
       pad_(slack_) {
   std::visit(Builder{*this}, object.shape);
+  for (PlanePatch& plane : planes_) plane.pad = PadOf(plane);
 }
 
 void SurfaceChart::SetFrame(Curved curved, const AffineFrame& frame) {
@@ -145,7 +146,7 @@ void SurfaceChart::SetFrame(Curved curved, const AffineFrame& frame) {
 
 SurfaceChart::PlanePatch SurfaceChart::MakePlane(const Vec3d& center, const Vec3d& ex,
                                                  const Vec3d& ey, double half) {
-  PlanePatch plane{center, ex, ey, {}, {}, {}, half, half};
+  PlanePatch plane{center, ex, ey, {}, {}, {}, half, half, 0};
   // Lengths are taken out first: their products could leave the range of double.
   const double lx = Length(ex), ly = Length(ey);
   const Vec3d ux = ex * (1 / lx), uy = ey * (1 / ly);
@@ -255,7 +256,7 @@ std::optional<SurfaceChart::PlanarCell> SurfaceChart::PlanarCellOf(int patch,
   const Vec3d ex = plane.ex * plane.hx, ey = plane.ey * plane.hy;
   return PlanarCell{plane.center + ex * (2 * u.low - 1) + ey * (2 * v.low - 1),
                     ex * (2 * (u.high - u.low)), ey * (2 * (v.high - v.low)), plane.normal,
-                    PadOf(plane)};
+                    plane.pad};
 }
 
 // On a curved patch a point p of the surface sees L in front of its tangent plane when the
@@ -268,7 +269,7 @@ bool SurfaceChart::FacesAway(int patch, const PatchHull& hull, const Light& ligh
     const PlanePatch& plane = planes_.at(static_cast<size_t>(patch - curved_patches_));
     // Hits lie off the plane, and normals turn, by rounding.
     if (!is_point) return Dot(light.to_light, plane.normal) < -kNormalRounding;
-    return Dot(light.position - plane.center, plane.normal) < -2 * PadOf(plane);
+    return Dot(light.position - plane.center, plane.normal) < -2 * plane.pad;
   }
   const double weight = is_point ? 1 : 0;
   const Vec3d l =
@@ -291,7 +292,7 @@ double SurfaceChart::PadOf(const PlanePatch& plane) const {
 // X ex + Y ey + h normal with X = gx.d, |X| <= pad |gx|, Y likewise, and |h| <= pad. So the prism
 // over the parallelogram with sides longer by that much contains the sum.
 PatchHull SurfaceChart::PlaneHull(const PlanePatch& plane, const SurfaceCell& cell) const {
-  const double pad = PadOf(plane);
+  const double pad = plane.pad;
   const Range u = RangeOf(cell.i, cell.depth), v = RangeOf(cell.j, cell.depth);
   const double px = pad * Length(plane.gx), py = pad * Length(plane.gy);
   const double x[2] = {(2 * u.low - 1) * plane.hx - px, (2 * u.high - 1) * plane.hx + px};

@@ -159,6 +159,7 @@ class SurfaceChart {
     Vec3d gx, gy;  // dual to ex, ey in the plane: X = gx.(x - center)
     Vec3d normal;  // unit; outwards unless the whole shape is planar
     double hx = 1, hy = 1;
+    double pad = 0;  // PlanarCell::pad
   };
   struct Builder;
 
