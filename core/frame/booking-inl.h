@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/frame/booked_packets.h"
 #include "core/frame/frame_plan.h"
 #include "core/packet/follow-inl.h"
 
@@ -23,19 +24,32 @@ class Booking {
       : scene_(scene), plan_(plan), sums_(sums) {}
   HWY_INLINE ~Booking() {}
 
-  // Does what the classical tracer does, for the sake of counting it.
+  // Adds to `sum` and `done` what the classical tracer does, for the sake of counting it.
   void Begin(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
-             const LaneMaterials& materials, LaneMask lanes, const LightSum& sum,
-             PacketWorkspace& workspace) {
+             const LaneMaterials& materials, LaneMask lanes, LightSum& sum,
+             PacketWorkspace& workspace, PacketCounts& done) {
     lanes_ = lanes;
     visits_ = 0;
-    LightSum forgotten = sum;
-    PacketCounts done;
     SearchedLights searched(scene_, false, workspace, done);
-    searched.Add(packet, hits, at, materials, lanes, forgotten);
+    searched.Add(packet, hits, at, materials, lanes, sum);
     const uint64_t searches = done.shadow_packets * kShadowWork + done.shadow_tests * kTestWork;
     search_work_ = static_cast<uint32_t>(searches / std::max<uint64_t>(done.shadow_packets, 1));
     classical_ = static_cast<uint32_t>(scene_.lights().size() * kLightWork + searches);
+  }
+  // What Begin has counted, and the same for a packet of which it is known.
+  void Note(const PathPacket& packet, const PacketHits& hits, BookedPacket& note) const {
+    note.hits = hits;
+    note.lanes = lanes_;
+    note.active = packet.rays.active;
+    note.is_tile = packet.is_tile;
+    note.classical = classical_;
+    note.search = search_work_;
+  }
+  void BeginAgain(const BookedPacket& packet) {
+    lanes_ = packet.lanes;
+    visits_ = 0;
+    classical_ = packet.classical;
+    search_work_ = packet.search;
   }
 
   // Lanes on one face. `is_sheet`: when they are not booked, they may be evaluated as a sheet.

@@ -41,7 +41,9 @@ namespace linetree::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 void RenderFrameBlock(const PacketScene&, const BlockTask&, const SurfaceCache::Reader&, FramePlan&,
-                      Asking, PacketWorkspace&, PacketCounts&) {}
+                      Asking, BookedPackets*, PacketWorkspace&, PacketCounts&) {}
+void BookAgain(const PacketScene&, const BookedPackets&, const SurfaceCache::Reader&, FramePlan&,
+               PacketWorkspace&) {}
 void RenderOnce(const PacketScene&, const OnceTask&, const SurfaceCache::Reader&, const FramePlan&,
                 PacketWorkspace&, PacketCounts&, OnceBlock&) {}
 void TraceCachedRays(const PacketScene&, const RayTask&, uint64_t, const SurfaceCache::Reader&,
@@ -49,9 +51,15 @@ void TraceCachedRays(const PacketScene&, const RayTask&, uint64_t, const Surface
 #else
 void RenderFrameBlock(const PacketScene& scene, const BlockTask& task,
                       const SurfaceCache::Reader& reader, FramePlan& plan, Asking asking,
-                      PacketWorkspace& workspace, PacketCounts& counts) {
-  CachedLights lights(scene, reader, plan, asking, true, workspace, counts);
+                      BookedPackets* booked, PacketWorkspace& workspace, PacketCounts& counts) {
+  CachedLights lights(scene, reader, plan, asking, booked, true, workspace, counts);
   BlockRenderer<CachedLights>(scene, task, lights, workspace, counts).Render();
+}
+void BookAgain(const PacketScene& scene, const BookedPackets& booked,
+               const SurfaceCache::Reader& reader, FramePlan& plan, PacketWorkspace& workspace) {
+  PacketCounts none;
+  CachedLights lights(scene, reader, plan, Asking::kBooked, nullptr, true, workspace, none);
+  for (const BookedPacket& packet : booked.packets) lights.BookAgain(packet);
 }
 void RenderOnce(const PacketScene& scene, const OnceTask& task, const SurfaceCache::Reader& reader,
                 const FramePlan& plan, PacketWorkspace& workspace, PacketCounts& counts,
@@ -61,7 +69,7 @@ void RenderOnce(const PacketScene& scene, const OnceTask& task, const SurfaceCac
 void TraceCachedRays(const PacketScene& scene, const RayTask& task, uint64_t packets,
                      const SurfaceCache::Reader& reader, FramePlan& plan, Asking asking,
                      PacketWorkspace& workspace, PacketCounts& counts) {
-  CachedLights lights(scene, reader, plan, asking, false, workspace, counts);
+  CachedLights lights(scene, reader, plan, asking, nullptr, false, workspace, counts);
   TraceRays(scene, task, packets, lights, workspace, counts);
 }
 #endif
@@ -73,14 +81,20 @@ HWY_AFTER_NAMESPACE();
 namespace linetree {
 
 HWY_EXPORT(RenderFrameBlock);
+HWY_EXPORT(BookAgain);
 HWY_EXPORT(RenderOnce);
 HWY_EXPORT(TraceCachedRays);
 
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
-                          PacketWorkspace& workspace, PacketCounts& counts) {
+                          BookedPackets* booked, PacketWorkspace& workspace, PacketCounts& counts) {
   HWY_DYNAMIC_DISPATCH(RenderFrameBlock)
-  (scene, task, lights, plan, asking, workspace, counts);
+  (scene, task, lights, plan, asking, booked, workspace, counts);
+}
+void BookAgainWide(const PacketScene& scene, const BookedPackets& booked,
+                   const SurfaceCache::Reader& lights, FramePlan& plan,
+                   PacketWorkspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(BookAgain)(scene, booked, lights, plan, workspace);
 }
 void RenderOnceWide(const PacketScene& scene, const OnceTask& task,
                     const SurfaceCache::Reader& lights, const FramePlan& plan,

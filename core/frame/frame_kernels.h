@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/cache/surface_cache.h"
+#include "core/frame/booked_packets.h"
 #include "core/frame/frame_plan.h"
 #include "core/packet/packet_kernels.h"
 
@@ -14,10 +15,14 @@ enum class Asking {
   kPlanned,    // where they pay as they are
 };
 
-// As RenderBlockWide, with the trees' help.
+// As RenderBlockWide, with the trees' help. `booked`: which packets are booked, and where they are
+// kept; null: none.
 void RenderFrameBlockWide(const PacketScene& scene, const BlockTask& task,
                           const SurfaceCache::Reader& lights, FramePlan& plan, Asking asking,
-                          PacketWorkspace& workspace, PacketCounts& counts);
+                          BookedPackets* booked, PacketWorkspace& workspace, PacketCounts& counts);
+// Books them once more, with the trees as they are now.
+void BookAgainWide(const PacketScene& scene, const BookedPackets& booked,
+                   const SurfaceCache::Reader& lights, FramePlan& plan, PacketWorkspace& workspace);
 
 // A region of at most kBlockSide pixels a side, each with several samples.
 struct OnceTask {

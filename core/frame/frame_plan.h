@@ -119,11 +119,11 @@ class FramePlan {
   void Book(size_t object, const PacketWork& work) {
     Account& account = accounts_[object];
     booked_.fetch_add(work.classical, std::memory_order_relaxed);
-    if (work.asked < work.classical) {
-      (work.known && Pays(object) ? saved_ : promised_)
-          .fetch_add(work.classical - work.asked, std::memory_order_relaxed);
-    } else if (work.known && Pays(object)) {
-      saved_.fetch_sub(work.asked - work.classical, std::memory_order_relaxed);
+    const int64_t gain = int64_t{work.classical} - int64_t{work.asked};
+    if (work.known) {
+      account.gained.fetch_add(gain, std::memory_order_relaxed);
+    } else if (gain > 0) {
+      promised_.fetch_add(gain, std::memory_order_relaxed);
     }
     account.points.fetch_add(work.points, std::memory_order_relaxed);
     account.asked.fetch_add(work.asked, std::memory_order_relaxed);
@@ -137,8 +137,8 @@ class FramePlan {
     accounts_[object].pays.store(false, std::memory_order_relaxed);
   }
 
-  // What was booked since the last Decide: work without trees, what they saved of it, and what
-  // cells that are still to be built promise to save.
+  // What was booked since the last Decide: work without trees, what they save of it where they are
+  // asked from now on, and what cells promise that are still to be built or are not asked.
   struct Booked {
     double classical = 0, saved = 0, promised = 0;
   };
@@ -146,9 +146,8 @@ class FramePlan {
   // Takes what was booked into account.
   Booked Decide() {
     std::lock_guard lock(decide_mutex_);
-    const Booked booked = {static_cast<double>(booked_.exchange(0, std::memory_order_relaxed)),
-                           static_cast<double>(saved_.exchange(0, std::memory_order_relaxed)),
-                           static_cast<double>(promised_.exchange(0, std::memory_order_relaxed))};
+    Booked booked = {static_cast<double>(booked_.exchange(0, std::memory_order_relaxed)), 0,
+                     static_cast<double>(promised_.exchange(0, std::memory_order_relaxed))};
     bool wants_any = false, pays_any = false, hopes_any = false;
     uint64_t points = 0, asked = 0, classical = 0;
     for (size_t object = 0; object < accounts_.size(); ++object) {
@@ -162,6 +161,9 @@ class FramePlan {
       const uint32_t own_spent = account.spent.load(std::memory_order_relaxed);
       const bool pays = SavedOf(own_points, own_spent, own_classical) > 0;
       account.pays.store(pays, std::memory_order_relaxed);
+      const auto gained = static_cast<double>(account.gained.exchange(0));
+      booked.saved += pays ? gained : 0;
+      booked.promised += pays ? 0 : std::max(gained, 0.0);
       wants_any = wants_any || saved > 0;
       pays_any = pays_any || pays;
       hopes_any = hopes_any || (saved > 0 && !pays);
@@ -194,14 +196,18 @@ class FramePlan {
     wants_any_ = former.wants_any_.load();
     pays_any_ = former.pays_any_.load();
     hopes_any_ = former.hopes_any_.load();
+    is_promising_ = former.is_promising_.load();
   }
 
   // Whether some object's trees are worth growing; pay as they are; are worth growing, but do not
   // pay yet.
   bool WantsAny() const { return always_ || wants_any_; }
   bool PaysAny() const { return always_ || pays_any_; }
-  bool HopesAny() const { return hopes_any_; }
-  bool SkipsAll() const { return CountSkipped() == accounts_.size(); }
+  bool HopesAny() const { return always_ || hopes_any_; }
+  // Whether it is worth looking for what is promised before the next frame is rendered; at first it
+  // is.
+  bool IsPromising() const { return always_ || is_promising_; }
+  void SetPromising(bool is_promising) { is_promising_ = is_promising; }
   // How often it was decided.
   uint32_t decisions() const { return decisions_; }
 
@@ -243,6 +249,7 @@ class FramePlan {
 
   struct Account {
     std::atomic<uint32_t> points{0}, asked{0}, classical{0}, spent{0};
+    std::atomic<int64_t> gained{0};     // by cells that are known, since the last Decide
     std::atomic<float> saved{kUnseen};  // per point
     std::atomic<bool> pays{false};
 
@@ -259,7 +266,8 @@ class FramePlan {
   std::vector<Account> accounts_;  // by object
   std::atomic<float> usual_{1};    // saved per point, of all objects together
   std::atomic<bool> wants_any_{true}, pays_any_{false}, hopes_any_{true};
-  std::atomic<int64_t> booked_{0}, saved_{0}, promised_{0};
+  std::atomic<bool> is_promising_{true};
+  std::atomic<int64_t> booked_{0}, promised_{0};
   std::atomic<uint32_t> decisions_{0};
   std::mutex decide_mutex_;
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/cache/surface_cache.h"
+#include "core/frame/booked_packets.h"
 #include "core/frame/booking-inl.h"
 #include "core/frame/frame_kernels.h"
 #include "core/frame/frame_plan.h"
@@ -21,18 +22,20 @@ HWY_BEFORE_NAMESPACE();
 namespace linetree::HWY_NAMESPACE {
 
 // Lights of a Follower. `is_frame`: packets of eye rays are tiles of an image. Where work is
-// booked, it is counted for the plan beside what it would be without the trees.
+// booked, it is counted for the plan beside what it would be without the trees: of all packets
+// under Asking::kBooked, else of those that `booked` names (null: none).
 class CachedLights {
  public:
   static constexpr bool kHasSheets = true;
 
   HWY_INLINE CachedLights(const PacketScene& scene, const SurfaceCache::Reader& reader,
-                          FramePlan& plan, Asking asking, bool is_frame, PacketWorkspace& workspace,
-                          PacketCounts& counts)
+                          FramePlan& plan, Asking asking, BookedPackets* booked, bool is_frame,
+                          PacketWorkspace& workspace, PacketCounts& counts)
       : scene_(scene),
         reader_(reader),
         plan_(plan),
         asking_(asking),
+        booked_(booked),
         is_booked_(asking == Asking::kBooked),
         is_frame_(is_frame),
         workspace_(workspace),
@@ -40,7 +43,9 @@ class CachedLights {
         counts_(counts),
         booking_(scene, plan, reader.epsilon() > 0),
         cells_(reader),
-        sheet_(scene, reader, cells_) {}
+        sheet_(scene, reader, cells_) {
+    cells_.CountUses(CountsOthers());
+  }
   // Written down, because what is implicit is not compiled for this target.
   HWY_INLINE ~CachedLights() {}
 
@@ -51,7 +56,7 @@ class CachedLights {
     asked_face_ = face;
     const auto object = static_cast<size_t>(face.object);
     has_sheet_ = false;
-    if (is_booked_ || !(reader_.epsilon() > 0) || !Asks(object)) return false;
+    if (!(reader_.epsilon() > 0) || !Asks(object)) return false;
     const SurfaceTree* tree = reader_.TreeOf(object);
     return has_sheet_ = tree != nullptr && sheet_.Open(*tree, face, eye_rays, block);
   }
@@ -60,6 +65,7 @@ class CachedLights {
                                 Floats radiance[3], Floats& depth) {
     LaneUses uses;
     const LaneMask lanes = packet.rays.active;
+    if (booked_ != nullptr && IsBookedTile(packet)) return false;
     if (!sheet_.Evaluate(across, up, lanes, radiance, depth, uses)) return false;
     MarkUses(packet, uses, workspace_);
     const auto pixels = static_cast<uint64_t>(std::popcount(lanes));
@@ -74,20 +80,21 @@ class CachedLights {
     use_ = {};
     unknown_ = 0;
     for (Floats& light : summed_) light = Floats::All(0);
-    if (is_booked_) booking_.Begin(packet, hits, at, materials, lanes, sum, workspace_);
     next_unknown_ = 0;
-    if (is_booked_ || !is_frame_ || !SkipsAny(hits, lanes)) {
-      Collect(packet, hits, lanes, materials);
+    if (booked_ != nullptr) is_booked_ = IsBooked(packet);
+    if (is_booked_) {
+      AddBooked(packet, hits, at, materials, lanes, sum);
+    } else if (!is_frame_ || !SkipsAny(hits, lanes)) {
+      Collect(SetOf(packet), hits, lanes, &materials);
     } else {
       unknown_ = lanes;
     }
-    if (is_booked_) booking_.Close(unknown_ == 0);
-    // A search costs the same for one lane and for all. But which rays share a packet is for frames
-    // to say; answers of a batch don't depend on it.
-    if (unknown_ == lanes || (unknown_ != 0 && is_frame_)) {
+    if (IsSearched(lanes)) {
       use_ = {lanes, 0, 0};
-      SearchedLights(scene_, false, workspace_, counts_)
-          .Add(packet, hits, at, materials, lanes, sum);
+      if (!is_booked_) {
+        SearchedLights(scene_, false, workspace_, counts_)
+            .Add(packet, hits, at, materials, lanes, sum);
+      }
     } else {
       use_.searched |= unknown_;
       use_.listed = lanes & ~unknown_;
@@ -98,10 +105,57 @@ class CachedLights {
     MarkUses(packet, use_, workspace_);
   }
 
+  // Books a packet as it would be now, and counts who asks for which cells once more.
+  void BookAgain(const BookedPacket& packet) {
+    booking_.BeginAgain(packet);
+    Collect({packet.active, packet.is_tile}, packet.hits, packet.lanes, nullptr);
+    booking_.Close(unknown_ == 0);
+  }
+
  private:
-  // Finds the cells of the lanes, and leaves those that are in none in unknown_.
-  void Collect(const PathPacket& packet, const PacketHits& hits, LaneMask lanes,
-               const LaneMaterials& materials) {
+  // What makes a packet one that may be evaluated as a sheet.
+  struct LaneSet {
+    LaneMask active;
+    bool is_tile;
+  };
+  static HWY_INLINE LaneSet SetOf(const PathPacket& packet) {
+    return {packet.rays.active, packet.is_tile};
+  }
+
+  HWY_INLINE bool CountsOthers() const { return booked_ == nullptr || booked_->others_count; }
+  HWY_INLINE bool IsBookedTile(const PathPacket& packet) const {
+    return (booked_->tiles >> (packet.pixel[0] / kPacketLanes) & 1) != 0;
+  }
+  HWY_INLINE bool IsBooked(const PathPacket& packet) {
+    return packet.is_tile ? IsBookedTile(packet) : spawned_++ % booked_->one_in == 0;
+  }
+  // A search costs the same for one lane and for all. But which rays share a packet is for frames
+  // to say; answers of a batch don't depend on it.
+  HWY_INLINE bool IsSearched(LaneMask lanes) const {
+    return unknown_ == lanes || (unknown_ != 0 && is_frame_);
+  }
+
+  // Collect, and the lights where they are searched for anyway.
+  HWY_NOINLINE void AddBooked(const PathPacket& packet, const PacketHits& hits, const HitPoints& at,
+                              const LaneMaterials& materials, LaneMask lanes, LightSum& sum) {
+    LightSum searched = sum;
+    PacketCounts done;
+    booking_.Begin(packet, hits, at, materials, lanes, searched, workspace_, done);
+    cells_.CountUses(true);
+    Collect(SetOf(packet), hits, lanes, &materials);
+    cells_.CountUses(CountsOthers());
+    booking_.Close(unknown_ == 0);
+    if (IsSearched(lanes)) {
+      sum.SetTo(searched);
+      counts_ += done;
+    }
+    if (booked_ != nullptr) booking_.Note(packet, hits, booked_->packets.emplace_back());
+  }
+
+  // Finds the cells of the lanes, and leaves those that are in none in unknown_. Without materials
+  // nothing is evaluated.
+  void Collect(const LaneSet& set, const PacketHits& hits, LaneMask lanes,
+               const LaneMaterials* materials) {
     const Ints objects = Ints::Load(hits.object), faces = Ints::Load(hits.face);
     // A ray inside a solid asks the solid itself too.
     unknown_ = lanes & hits.inside;
@@ -116,7 +170,7 @@ class CachedLights {
         unknown_ |= same;
         continue;
       }
-      if (is_booked_) booking_.Visit(object, same, MayBeSheet(packet, object, face, same));
+      if (is_booked_) booking_.Visit(object, same, MayBeSheet(set, object, face, same));
       const SurfaceTree* tree = reader_.TreeOf(static_cast<size_t>(object));
       if (tree == nullptr) {
         if (is_booked_) booking_.AddUnknown();
@@ -134,13 +188,13 @@ class CachedLights {
   }
 
   void CollectCells(const SurfaceTree& tree, const PacketHits& hits, LaneMask lanes,
-                    const LaneMaterials& materials) {
+                    const LaneMaterials* materials) {
     for (LaneMask left = lanes; left != 0;) {
       OpenCells::Entry& entry = cells_.Find(tree, places_, std::countr_zero(left));
       const SurfaceNode& node = *entry.node;
       LaneMask same = LanesIn(entry) & left;
       left &= ~same;
-      if (!skipped_) entry.uses += static_cast<uint32_t>(std::popcount(same));
+      if (!skipped_) cells_.AddUses(entry, same);
       const CellLights* known = node.payload.get();
       if (is_booked_) booking_.AddCell(known);
       if (known == nullptr) {
@@ -154,8 +208,9 @@ class CachedLights {
         unknown_ |= same & ~clear;
         same &= clear;
       }
-      if (same != 0 && (unknown_ == 0 || !is_frame_))
-        Open(node, same, tree.chart().IsThin(), materials);
+      if (same != 0 && (unknown_ == 0 || !is_frame_) && materials != nullptr) {
+        Open(node, same, tree.chart().IsThin(), *materials);
+      }
     }
   }
 
@@ -300,11 +355,10 @@ class CachedLights {
   }
 
   // Whether these lanes of a packet, when it is not booked, may be evaluated as a sheet.
-  HWY_INLINE bool MayBeSheet(const PathPacket& packet, int32_t object, int face,
-                             LaneMask lanes) const {
+  HWY_INLINE bool MayBeSheet(const LaneSet& set, int32_t object, int face, LaneMask lanes) const {
     const auto material = static_cast<size_t>(scene_.material_of()[static_cast<size_t>(object)]);
     const PacketMaterials& table = scene_.materials();
-    return is_frame_ && packet.is_tile && lanes == packet.rays.active && reader_.epsilon() > 0 &&
+    return is_frame_ && set.is_tile && lanes == set.active && reader_.epsilon() > 0 &&
            table.spawns[material] == 0 && table.shines[material] == 0 &&
            scene_.IsFlat(object, face);
   }
@@ -313,12 +367,14 @@ class CachedLights {
   const SurfaceCache::Reader& reader_;
   FramePlan& plan_;
   const Asking asking_;
-  const bool is_booked_;
+  BookedPackets* const booked_;
+  bool is_booked_;
   const bool is_frame_;
   PacketWorkspace& workspace_;
   int32_t* const last_blockers_;
   PacketCounts& counts_;
   bool skipped_ = false;  // the object that is looked at
+  uint32_t spawned_ = 0;  // packets that are not of eye rays, so far
   Booking booking_;
   Places places_;
   OpenCells cells_;

@@ -7,6 +7,8 @@
 #define LINETREE_CORE_FRAME_OPEN_CELLS_INL_H_
 #endif
 
+#include <bit>
+
 #include "core/cache/surface_cache.h"
 #include "core/frame/places-inl.h"
 
@@ -30,6 +32,12 @@ class OpenCells {
   }
   OpenCells(const OpenCells&) = delete;
   OpenCells& operator=(const OpenCells&) = delete;
+
+  // Whether those who ask for cells are counted from now on.
+  HWY_INLINE void CountUses(bool counts) { counts_ = counts; }
+  HWY_INLINE void AddUses(Entry& entry, LaneMask lanes) const {
+    if (counts_) entry.uses += static_cast<uint32_t>(std::popcount(lanes));
+  }
 
   // The smallest cell that holds the place of this lane. Valid until the next call.
   HWY_INLINE Entry& Find(const SurfaceTree& tree, const Places& places, int lane) {
@@ -71,6 +79,7 @@ class OpenCells {
   const SurfaceCache::Reader& reader_;
   Entry entries_[kEntries];
   int newest_ = 0;
+  bool counts_ = true;
 };
 
 }  // namespace linetree::HWY_NAMESPACE

@@ -70,7 +70,7 @@ class PixelSheet : public Sheet {
       left &= ~same;
       if (known == nullptr || inner == 0) continue;
       const LaneMask sure = AddPixels(entry, *known, tile, inner, radiance, uses);
-      entry.uses += static_cast<uint32_t>(std::popcount(sure));
+      cells_.AddUses(entry, sure);
       done |= sure;
     }
     uses.listed = done;

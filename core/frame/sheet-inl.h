@@ -91,7 +91,7 @@ class Sheet {
       const LaneMask same = AddCell(entry, *known, tile, left, radiance, uses);
       if ((same >> lane & 1) == 0) return false;
       left &= ~same;
-      entry.uses += static_cast<uint32_t>(std::popcount(same));
+      cells_.AddUses(entry, same);
     }
     depth = DepthOf(across, up, t);
     uses.listed = lanes;

@@ -321,6 +321,10 @@ class LightSum {
     if (odd != 0) AddOdd(index, odd, summed, shadow);
   }
 
+  // What another sum for the same hits has come to.
+  HWY_INLINE void SetTo(const LightSum& other) {
+    for (size_t c = 0; c < 3; ++c) sum_[c] = other.sum_[c];
+  }
   // Radiance that is known already.
   HWY_INLINE void AddRadiance(const Floats radiance[3], LaneMask lanes) {
     const Mask which = MaskOf(lanes);

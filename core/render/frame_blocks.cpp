@@ -11,6 +11,7 @@
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
+#include "core/render/block_tiles.h"
 #include "core/render/grow_trees.h"
 #include "core/render/sample_blocks.h"
 #include "core/render/sample_mean.h"
@@ -19,45 +20,16 @@
 namespace linetree {
 namespace {
 
-constexpr int kTilesOfBlock = kBlockPixels / kPacketLanes;
-constexpr size_t kTilesInRow = kBlockSide / 4;
-constexpr uint64_t kAllTiles = ~uint64_t{0};
-static_assert(kTilesOfBlock == 64);
-
-// What is promised is looked for, in one of so many blocks, where it is more than the one share of
-// the frame's work; for cells that last, where it is less than the other.
+// What is promised is looked for where it is more than the one share of the frame's work; for cells
+// that last, where it is less than the other.
 constexpr double kLeastPromise = 0.01, kLargePromise = 0.1;
-constexpr size_t kExploredBlocks = 4;
-// What pays for itself many times within the frame may cost this share of its work.
-constexpr double kSureShare = 0.1;
-// One in so many blocks is probed: while little is known, where trees pay, and where none does.
-constexpr size_t kNewBlocks = 2, kProbedBlocks = 4, kIdleBlocks = 16;
-constexpr uint32_t kOftenDecided = 6;
-constexpr size_t kMostProbed = 256;  // there is no need for more
-
+// What pays for itself many times within the frame may cost this share of its work; first of all
+// the other, to see whether cells keep what was promised.
+constexpr double kSureShare = 0.1, kTrialShare = 0.01;
+// What cells save of the frame's work for it to be cut once more.
+constexpr double kWorthTrying = 0.05;
 // Blocks that one parallel loop handles: enough to hide its cost, few enough to stop soon.
 constexpr size_t kSliceBlocks = 256;
-
-// One tile of a block, first of all: scattered, so that no pattern of the picture can hide from it.
-uint64_t FirstTile(size_t block) { return uint64_t{1} << (block * 29 % kTilesOfBlock); }
-// Then squares of so many tiles a side, elsewhere: rays that stay together are traced faster. First
-// to see where cells are missing, then to see what they save.
-constexpr size_t kExploredSide = 2, kTriedSide = 4;
-// The top left one of such a square, and all of it.
-uint64_t CornerOf(size_t block, size_t side) {
-  const size_t squares = kTilesInRow / side;
-  const size_t square = block * 11 % (squares * squares);
-  return uint64_t{1} << (square / squares * side * kTilesInRow + square % squares * side);
-}
-uint64_t SquareOf(size_t block, size_t side) {
-  uint64_t tiles = 0;
-  for (size_t row = 0; row < side; ++row) {
-    tiles |= (CornerOf(block, side) * ((uint64_t{1} << side) - 1)) << (row * kTilesInRow);
-  }
-  return tiles;
-}
-// Of a block, how much a square is.
-constexpr double ShareOf(size_t side) { return static_cast<double>(side * side) / kTilesOfBlock; }
 
 // Adds the time that it lives to `ms`.
 class StageTimer {
@@ -131,7 +103,7 @@ class Blocks {
   void RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts, OnceBlock& once,
                   UseCounts& uses);
   void RenderTask(const BlockTask& task, std::optional<Asking> asking, PacketWorkspace& workspace,
-                  PacketCounts& counts);
+                  PacketCounts& counts, BookedPackets* booked = nullptr);
   // Where no tree pays there is nothing to look up.
   std::optional<Asking> PaidFor(std::optional<Asking> asking) const {
     return asking == Asking::kPlanned && !plan_.PaysAny() ? std::nullopt : asking;
@@ -139,18 +111,30 @@ class Blocks {
   // Rays of a pixel.
   double Each() const { return samples_ ? samples_->count() : 1; }
   double Grow(const Growth& growth);
-  FramePlan::Booked Probe(double from, double to, const TilesOf& tiles_of);
-  // Render squares of blocks, what is not `done` of them, and grow trees: for at most so much,
-  // which returns what it cost; and for what has been earned.
-  double Explore(size_t often, double horizon, double most_work, std::vector<uint64_t>& done);
-  void TrySquares(std::vector<uint64_t>& done);
-  // In one of so many blocks a tile is booked.
-  size_t ProbedBlocks() const {
-    const size_t often = std::max<size_t>(1, BlockCount() / kMostProbed);
-    if (plan_.decisions() < kOftenDecided) return kNewBlocks * often;
-    return (plan_.SkipsAll() ? kIdleBlocks : kProbedBlocks) * often;
+  // Says what is to be booked.
+  void ChooseProbes();
+  FramePlan::Booked BookAgain();
+  // A frame whose trees grow before they are asked for most of it, or only after it.
+  void RenderLearning();
+  void RenderSettled();
+  void RenderRest();
+  // Work of the whole frame without trees, by what was booked of it.
+  double WorkOf(const FramePlan::Booked& booked) const {
+    return Each() * kRayWork * static_cast<double>(frame_.object.size()) +
+           share_ * booked.classical;
   }
-
+  // Whether it was enough to look for it before the next frame is rendered.
+  bool NotePromise(const FramePlan::Booked& booked) {
+    const bool is_promising =
+        plan_.always() || share_ * booked.promised > kLeastPromise * WorkOf(booked);
+    plan_.SetPromising(is_promising);
+    return is_promising && plan_.HopesAny();
+  }
+  // Lets trees grow, in stages, for what they promise to save in this frame; returns what they save
+  // of what was booked.
+  double Earn(double work, double promised);
+  // Renders squares of blocks and grows trees for what has been earned.
+  void TrySquares(double saved);
   const PacketTracer& packets_;
   SurfaceCache& surfaces_;
   FramePlan& plan_;
@@ -164,6 +148,12 @@ class Blocks {
   // Of frames with several to a pixel. Their trees learn from rays through the pixels' centres,
   // which are no part of the picture.
   std::optional<PixelSamples> samples_;
+  // Of a cached frame: tiles that are rendered, by block; what is booked there, and how many
+  // shading points one that is booked stands for.
+  std::vector<uint64_t> done_;
+  std::vector<BookedPackets> booked_;
+  double share_ = 0;
+  bool books_ = false;  // this wave
   std::mutex mutex_;
   std::vector<std::unique_ptr<PacketWorkspace>> idle_;  // guarded by mutex_
 };
@@ -199,19 +189,20 @@ void Blocks::ForBlocks(double from, double to, RayCounts& rays, Fn&& body) {
 }
 
 void Blocks::RenderTask(const BlockTask& task, std::optional<Asking> asking,
-                        PacketWorkspace& workspace, PacketCounts& counts) {
+                        PacketWorkspace& workspace, PacketCounts& counts, BookedPackets* booked) {
   if (!asking) {
     RenderBlockWide(packets_.scene(), task, workspace, counts);
     return;
   }
   const SurfaceCache::Reader reader(surfaces_, SumError());
-  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, *asking, workspace, counts);
+  RenderFrameBlockWide(packets_.scene(), task, reader, plan_, *asking, booked, workspace, counts);
 }
 
 void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
                         const TilesOf& tiles_of) {
-  asking = PaidFor(asking);
-  const bool asked = asking.has_value();
+  // Once: other frames may decide meanwhile.
+  const bool pays = PaidFor(asking).has_value();
+  const auto books = [&](size_t block) { return books_ && booked_[block].tiles != 0; };
   std::vector<UseCounts> uses(BlockCount());
   RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
   ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
@@ -221,11 +212,15 @@ void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
     const PacketTracer::Region region = RegionOf(block);
     const BlockTask task = {
         eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
-    RenderTask(task, asking, workspace, counts);
+    const bool asked = pays || books(block);
+    RenderTask(task, asked ? asking : std::nullopt, workspace, counts,
+               books(block) ? &booked_[block] : nullptr);
     StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
   });
   if (samples_) return;
-  for (const UseCounts& counts : uses) AddSources(counts, asked, frame_.stats);
+  for (size_t block = 0; block < uses.size(); ++block) {
+    AddSources(uses[block], pays || books(block), frame_.stats);
+  }
 }
 
 void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts,
@@ -282,72 +277,109 @@ double Blocks::Grow(const Growth& growth) {
 }
 
 // Trees grow for a small share of the frame's work, and by what they earn: half of what the cells
-// built so far are measured to save in the rest of the frame.
+// built so far are measured to save in the rest of the frame. Where the last frame has promised
+// nothing, this one is not cut into waves: that costs more than to look.
 void Blocks::RenderCached() {
+  ChooseProbes();
+  if (plan_.IsPromising() || samples_) {
+    RenderLearning();
+  } else {
+    RenderSettled();
+  }
+}
+
+void Blocks::ChooseProbes() {
   const uint32_t turn = plan_.decisions();
-  const size_t probed = ProbedBlocks();
-  const auto first_tile = [&](size_t block) {
-    return (block + turn) % probed == 0 ? FirstTile(block) : 0;
-  };
-  const FramePlan::Booked first = Probe(0, 0.05, first_tile);
-  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
-  const double work =
-      Each() * kRayWork * static_cast<double>(frame_.object.size()) + share * first.classical;
-  const double promised = share * first.promised;
+  const size_t often = OneProbedIn(BlockCount());
+  share_ = Each() * static_cast<double>(kTilesOfBlock / kBookedTiles * often);
+  done_.assign(BlockCount(), 0);
+  booked_.assign(BlockCount(), {});
+  for (size_t block = 0; block < BlockCount(); ++block) {
+    if (!IsProbed(block, static_cast<size_t>(across_), often, turn)) continue;
+    booked_[block].tiles = TilesToBook(block);
+    booked_[block].one_in = samples_ ? 1 : kTilesOfBlock / kBookedTiles;
+    // Rays through the centres of pixels that have several are no part of the picture.
+    done_[block] = samples_ ? booked_[block].tiles : kAllTiles;
+  }
+}
+
+void Blocks::RenderLearning() {
+  {
+    const StageTimer timer(frame_.stages.probe_ms);
+    books_ = true;
+    RenderWave(0, 0.1, Asking::kPlanned, [&](size_t block) { return done_[block]; });
+    books_ = false;
+  }
+  const FramePlan::Booked first = plan_.Decide();
+  const double work = WorkOf(first), promised = share_ * first.promised;
   double purse = kLearningShare * work;
-  purse -= Grow({share, share, kSureHorizon, std::min(purse, promised / 2)});
-  std::vector<uint64_t> done(BlockCount());
-  for (size_t block = 0; block < done.size(); ++block) done[block] = first_tile(block);
-  if (plan_.HopesAny() && promised > kLeastPromise * work) {
+  purse -= Grow({share_, share_, kSureHorizon, std::min(purse, promised / 2)});
+  if (NotePromise(first)) {
+    BookAgain();
     if (promised > kLargePromise * work) {
-      const double most_work = std::min(promised / 4, kSureShare * work);
-      if (Explore(kExploredBlocks, kSureHorizon, most_work, done) > 0) TrySquares(done);
+      const double saved = Earn(work, promised);
+      if (share_ * saved > kWorthTrying * work) TrySquares(saved);
     } else {
-      purse -= Explore(kExploredBlocks, kLearningHorizon, purse, done);
+      purse -= Grow({share_, share_, kLearningHorizon, purse});
     }
   }
+  RenderRest();
+  Grow({1, share_, kLearningHorizon, purse});
+}
+
+void Blocks::RenderSettled() {
+  done_.assign(BlockCount(), 0);
+  // All count here, each for itself.
+  for (BookedPackets& booked : booked_) booked.others_count = true;
+  books_ = true;
+  RenderRest();
+  books_ = false;
+  const FramePlan::Booked booked = plan_.Decide();
+  double purse = kLearningShare * WorkOf(booked);
+  purse -= Grow({1, share_, kLearningHorizon, purse});
+  if (!NotePromise(booked)) return;
+  BookAgain();
+  Grow({share_, share_, kLearningHorizon, purse});
+}
+
+void Blocks::RenderRest() {
   if (samples_) {
     RenderSamples(0.5, 1, Asking::kPlanned);
   } else {
-    RenderWave(0.5, 1, Asking::kPlanned, [&](size_t block) { return kAllTiles & ~done[block]; });
+    RenderWave(0.5, 1, Asking::kPlanned, [&](size_t block) { return ~done_[block]; });
   }
-  Grow({1, share, kLearningHorizon, purse});
 }
 
-FramePlan::Booked Blocks::Probe(double from, double to, const TilesOf& tiles_of) {
+FramePlan::Booked Blocks::BookAgain() {
   const StageTimer timer(frame_.stages.probe_ms);
-  RenderWave(from, to, Asking::kBooked, tiles_of);
+  RayCounts none;
+  ForBlocks(0.1, 0.1, none, [&](size_t block, PacketWorkspace& workspace, PacketCounts&) {
+    if (booked_[block].packets.empty()) return;
+    const SurfaceCache::Reader reader(surfaces_, SumError());
+    BookAgainWide(packets_.scene(), booked_[block], reader, plan_, workspace);
+  });
   return plan_.Decide();
 }
 
-double Blocks::Explore(size_t often, double horizon, double most_work,
-                       std::vector<uint64_t>& done) {
-  const uint32_t turn = plan_.decisions();
-  const auto square = [&](size_t block) {
-    return (block + turn) % often == 0 ? SquareOf(block, kExploredSide) : 0;
-  };
-  RenderWave(0.05, 0.1, Asking::kExploring,
-             [&](size_t block) { return square(block) & ~done[block]; });
-  for (size_t block = 0; block < done.size(); ++block) done[block] |= square(block);
-  const double weight = Each() * static_cast<double>(often) / ShareOf(kExploredSide);
-  const double booked = Each() * static_cast<double>(kTilesOfBlock * ProbedBlocks());
-  return Grow({weight, booked, horizon, most_work});
+double Blocks::Earn(double work, double promised) {
+  const double most_work = std::min(promised / 4, kSureShare * work);
+  double spent = 0, saved = 0, purse = kTrialShare * work;
+  while (plan_.HopesAny()) {
+    const double now = Grow({share_, share_, kSureHorizon, std::min(purse, most_work - spent)});
+    if (now == 0) break;
+    spent += now;
+    saved = BookAgain().saved;
+    purse = kReinvested * share_ * saved - spent;
+  }
+  return saved;
 }
 
-// One tile of some is booked.
-void Blocks::TrySquares(std::vector<uint64_t>& done) {
-  const size_t probed = ProbedBlocks();
-  const auto corner = [&](size_t block) {
-    return block % probed == 0 ? CornerOf(block, kTriedSide) & ~done[block] : 0;
-  };
-  const FramePlan::Booked booked = Probe(0.1, 0.15, corner);
-  RenderWave(0.15, 0.5, Asking::kPlanned, [&](size_t block) {
-    return SquareOf(block, kTriedSide) & ~corner(block) & ~done[block];
-  });
-  for (size_t block = 0; block < done.size(); ++block) done[block] |= SquareOf(block, kTriedSide);
-  const double share = Each() * static_cast<double>(kTilesOfBlock * probed);
-  const double earned = kReinvested * share * (1 - ShareOf(kTriedSide)) * booked.saved;
-  if (earned > 0) Grow({Each() / ShareOf(kTriedSide), share, kSureHorizon, earned});
+void Blocks::TrySquares(double saved) {
+  const auto square = [&](size_t block) { return TriedSquare(block) & ~done_[block]; };
+  RenderWave(0.1, 0.5, Asking::kPlanned, square);
+  for (size_t block = 0; block < done_.size(); ++block) done_[block] |= TriedSquare(block);
+  const double earned = kReinvested * share_ * (1 - kTriedShare) * saved;
+  if (earned > 0) Grow({Each() / kTriedShare, share_, kSureHorizon, earned});
 }
 
 }  // namespace

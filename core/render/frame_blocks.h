@@ -1,9 +1,10 @@
 // Whole frames by packets: blocks of 32 x 32 pixels, classical or with what the surface trees know.
 //
-// Cached frames go in waves: one tile (4 x 4 pixels) of every block, then four more, then the
-// rest; between them the trees grow where rays have gone. Waves see the trees only between builds,
-// so a picture does not depend on the number of threads; where the first wave finds nothing to
-// build, the rest follows at once.
+// Cached frames go in waves: some blocks first, of which a few packets are booked in the plan,
+// then, where what these promise has been seen to be kept, a square of every other block, then the
+// rest; between them the trees grow where rays have gone, and what was booked is booked again,
+// without being traced again. Waves see the trees only between builds, so a picture does not depend
+// on the number of threads.
 #pragma once
 
 #include "absl/status/status.h"

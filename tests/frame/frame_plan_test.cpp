@@ -27,7 +27,7 @@ TEST(FramePlanTest, TreesAreAskedOnceTheyPayAsTheyAre) {
   EXPECT_TRUE(plan.HopesAny());
   EXPECT_FALSE(plan.PaysAny());
   for (int i = 0; i < 3; ++i) plan.Book(0, Work(200, 1000));
-  EXPECT_DOUBLE_EQ(plan.Decide().saved, 0) << "they were not asked yet";
+  EXPECT_DOUBLE_EQ(plan.Decide().saved, 2400) << "they are asked from now on";
   EXPECT_TRUE(plan.Pays(0));
   EXPECT_TRUE(plan.PaysAny());
   EXPECT_FALSE(plan.HopesAny());
@@ -35,6 +35,20 @@ TEST(FramePlanTest, TreesAreAskedOnceTheyPayAsTheyAre) {
   EXPECT_DOUBLE_EQ(plan.Decide().saved, 800);
   plan.Skip(0);
   EXPECT_FALSE(plan.Pays(0));
+}
+
+// What is known, but not asked, saves nothing; what that would save is still a promise.
+TEST(FramePlanTest, WhatIsKnownIsSavedWhereTreesAreAsked) {
+  FramePlan plan(2);
+  plan.Book(0, Work(200, 1000));
+  for (int i = 0; i < 4; ++i) plan.Book(0, Work(200, 1000, 1100));
+  plan.Book(1, Work(900, 1000));
+  plan.Book(1, Work(400, 300));
+  const FramePlan::Booked booked = plan.Decide();
+  EXPECT_FALSE(plan.Pays(0));
+  EXPECT_FALSE(plan.Pays(1));
+  EXPECT_DOUBLE_EQ(booked.saved, 0);
+  EXPECT_DOUBLE_EQ(booked.promised, 4 * 800 + 800) << "the other object has gained nothing";
 }
 
 TEST(FramePlanTest, TreesThatCostMoreThanTheySaveAreSkipped) {

@@ -157,6 +157,29 @@ TEST(FrameBlocksTest, ThePlannerLooksAwayWhereNothingIsToBeSaved) {
   EXPECT_LT(cells_of(thrifty), cells_of(lavish) / 4);
 }
 
+// Whether a first frame finds out that trees pay, or that they do not, without tracing anything
+// for that alone.
+TEST(FrameBlocksTest, FirstFramesSaveWhatTheyCan) {
+  auto lit = std::make_shared<Scene>(*test::BallsOnFloor(12, 82));
+  for (int i = 0; i < 40; ++i) lit->lights.push_back(test::PointLight({i / 9.0 - 2, -1, 9}));
+  const std::shared_ptr<const Scene> scene = lit, clutter = test::BallsOnFloor(300, 82);
+  WorkerPool pool(2);
+  SceneHost host(scene), searching(clutter);
+  const auto next = [&](SceneHost& of) {
+    return test::RenderFrame(of, Request(of.scene(), Mode::kCached, 0.1, 400), pool).stats;
+  };
+  const FrameStats lights = next(host);
+  FrameStats later;
+  for (int i = 0; i < 3; ++i) later = next(host);
+  EXPECT_GT(later.base.summed, later.pixels / 10);
+  EXPECT_GT(2 * lights.base.summed, later.base.summed);
+  EXPECT_EQ(lights.base.eye, lights.pixels);
+  const FrameStats balls = next(searching);
+  EXPECT_EQ(balls.base.listed, 0u);
+  EXPECT_LT(balls.cells_tried, 12u) << "a trial, no more";
+  EXPECT_EQ(balls.base.eye, balls.pixels);
+}
+
 TEST(FrameBlocksTest, CancelledBeforeItBegan) {
   const auto scene = test::BallsOnFloor(12, 83);
   WorkerPool pool(2);

@@ -45,8 +45,8 @@ uint64_t CountOnSheets(SceneHost& host, const FrameRequest& request) {
       const BlockTask task = {
           eye_rays, region, request.options.limits, static_cast<size_t>(request.width),
           target,   true};
-      RenderFrameBlockWide(host.packets().scene(), task, reader, plan, Asking::kPlanned, workspace,
-                           counts);
+      RenderFrameBlockWide(host.packets().scene(), task, reader, plan, Asking::kPlanned, nullptr,
+                           workspace, counts);
     }
   }
   return counts.on_sheets;
