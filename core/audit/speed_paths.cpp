@@ -19,7 +19,8 @@ PathSpeed SpeedOf(SpeedPath path, Turns turns) {
     classical.push_back(turn.classical.median);
     cached.push_back(turn.cached.median);
   }
-  PathSpeed speed{RatiosOf(turns)};
+  PathSpeed speed;
+  static_cast<FlightRatios&>(speed) = RatiosOf(turns);
   speed.path = path;
   speed.frames = turns.size();
   speed.classical = SpreadOf(std::move(classical));
