@@ -136,6 +136,10 @@ class PathWalk {
     const bool reflects = task_.limits.Allow(leg.depth, leg.weight, material.reflect);
     const bool transmits = task_.limits.Allow(leg.depth, leg.weight, material.transmit);
     bool total_reflection = false;
+    if ((transmits || reflects) && !IsAboveRounding(hit.point, hit.shape->reach)) {
+      Refuse(Doubt::kBound);
+      return;
+    }
     if (transmits) {
       Vector refracted;
       Vec3d middle_refracted;

@@ -70,9 +70,9 @@ struct PatchHull {
   std::array<Vec3d, 8> points;
 };
 
-// Slack of a chart, relative to the object's size plus its distance from the world's origin: a
-// million roundings of the coordinates, so that hit points of rays from up to a thousand of these
-// lengths away are within it of the surface many times over, and a millionth of the size at most.
+// Slack of a chart, relative to the object's size plus its distance from the world's origin: eight
+// million roundings of the coordinates, so that hits of rays from 2^17 such lengths away are within
+// it (most shapes: a test), and a billionth of the length. Nothing rests on its size: see IsOn.
 inline constexpr double kSurfaceSlack = 0x1p-30;
 
 // By how much the rectangles of polygons and polyhedron faces are widened, relative to the same

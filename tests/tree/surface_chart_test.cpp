@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "core/trace/tracer.h"
 #include "tests/support/random_shapes.h"
+#include "tests/support/scene_builder.h"
 
 namespace linetree {
 namespace {
@@ -252,6 +254,32 @@ TEST(SurfaceChartPointTest, ApexesRimsPolesAndBorders) {
     std::vector<Vec3d> placed;
     for (const Vec3d& p : triangle) placed.push_back(at + p);
     check(test::Polygon(placed), 0, triangle);
+  }
+}
+
+// What kSurfaceSlack is for. Nothing that charts promise rests on its size, for IsOn asks every
+// hit; a smaller one would leave more of them out.
+TEST(SurfaceChartPointTest, HitsFromFarAwayAreOnTheSurface) {
+  Random random(19);
+  for (const ShapeKind kind : test::kShapeKinds) {
+    int hits = 0, on = 0;
+    for (int i = 0; i < 400; ++i) {
+      Scene scene;
+      test::AddMaterial(scene, test::Matte({0.5, 0.5, 0.5}));
+      test::AddObject(scene, test::RandomShape(kind, random, 1, random.InCube(3)), 0);
+      const Object& object = scene.objects[0];
+      const SurfaceChart chart(object);
+      const double reach = Length(object.bounds.Extent()) + Length(object.bounds.Center());
+      const Tracer tracer(scene);
+      const Vec3d eye = object.bounds.Center() + random.Direction() * (0x1p17 * reach);
+      const Vec3d target = random.InBox(object.bounds.min, object.bounds.max);
+      const Hit hit = tracer.Intersect(eye, Normalized(target - eye), {});
+      if (!hit.IsHit()) continue;
+      ++hits;
+      on += chart.IsOn(hit.face, hit.point) ? 1 : 0;
+    }
+    std::printf("%d of %d hits are on the surface\n", on, hits);
+    EXPECT_GT(on, hits * 9 / 10);
   }
 }
 
