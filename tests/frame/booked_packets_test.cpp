@@ -17,10 +17,6 @@ constexpr uint64_t kAll = ~uint64_t{0};
 // A frame of which all packets are booked, in blocks that are rendered with what the trees know.
 class BookedPacketsTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!packets_.IsWide()) GTEST_SKIP() << "no vectors";
-  }
-
   std::vector<BookedPackets> Render(FramePlan& plan, uint64_t tiles = kAll) {
     const EyeRays eye_rays(scene_->cameras[0], kSide, kSide);
     std::vector<float> radiance(3 * kSide * kSide);
