@@ -213,7 +213,8 @@ void AddSweepFlags(CLI::App& app, BenchSpeedFlags& flags) {
       ->type_name("DIR")
       ->needs(sweep);
   app.add_flag("--targets", flags.targets,
-               "What was to be reached, row by row, in scenes and settings of its own")
+               "What was to be reached, row by row, in scenes and settings of its own, beside what "
+               "a cache could reach that had all lights for nothing")
       ->excludes(sweep);
   app.add_option("--target-scenes", flags.target_part,
                  "Only targets whose scene's name contains this")
@@ -285,7 +286,11 @@ void AddBenchSpeed(CLI::App& bench, Commands& commands) {
       "to the scalar tracer. \"Ratio\": classical / cached of the same view in turn, the median of "
       "the repeats, then of\nthe frames; \"least\": of the frame that does worst. Ends with status "
       "1 when a pixel's ray tree differs, or\nradiance by more than allowed, or a cached pixel is "
-      "beyond epsilon; a target that is missed does not count.\n\nExamples:\n"
+      "beyond epsilon; a target that is missed does not count.\n\nTargets: \"without lights\" is "
+      "the ratio of "
+      "classical frames to those of the same scene by the same\ntracer when all its lights are "
+      "gone; eye, branches (reflected and refracted rays) and lights are what\nclassical frames "
+      "spend. Sheets, which spare hits as well, may do better.\n\nExamples:\n"
       "  linetree bench speed --json speed.json\n"
       "  linetree bench speed --scene scenes/room.textproto --width 1920 --height 1080 --repeat 9\n"
       "  linetree bench speed --sweep lights --sweep resolution --svg . --json sweeps.json\n"

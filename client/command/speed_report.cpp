@@ -231,15 +231,26 @@ std::string TargetTable(const std::vector<TargetResult>& results) {
                {"to reach", Align::kRight},
                {"measured", Align::kRight},
                {"met"},
+               {"without lights", Align::kRight},
+               {"eye ns/px", Align::kRight},
+               {"branches", Align::kRight},
+               {"lights", Align::kRight},
                {"max error", Align::kRight},
                {"beyond", Align::kRight}});
   for (const TargetResult& result : results) {
     const SpeedTarget& t = result.target;
+    const auto roof = [&](const auto& text) {
+      return result.roofline ? text(*result.roofline) : std::string("-");
+    };
     table.AddRow({t.scene, absl::StrCat(t.width, " x ", t.height), absl::StrCat(t.max_depth),
                   absl::StrCat(t.epsilon), absl::StrCat(t.samples), NameOf(t.path),
                   std::string(NameOf(t.what)), Hundredths(t.goal), Hundredths(result.measured),
-                  result.IsMet() ? "yes" : "no", absl::StrFormat("%.2g", result.largest_error),
-                  Grouped(result.beyond)});
+                  result.IsMet() ? "yes" : "no",
+                  roof([](const Roofline& r) { return Hundredths(r.Best()); }),
+                  roof([](const Roofline& r) { return Tenths(r.eye); }),
+                  roof([](const Roofline& r) { return Tenths(r.branches); }),
+                  roof([](const Roofline& r) { return Tenths(r.lights); }),
+                  absl::StrFormat("%.2g", result.largest_error), Grouped(result.beyond)});
   }
   return table.ToString();
 }
@@ -286,6 +297,14 @@ nlohmann::json TargetJson(const TargetResult& result) {
                          {"goal", t.goal},         {"measured", result.measured},
                          {"met", result.IsMet()},  {"largest_error", result.largest_error},
                          {"beyond", result.beyond}};
+  if (result.roofline) {
+    const Roofline& r = *result.roofline;
+    json["roofline"] = {{"best", r.Best()},
+                        {"eye_ns_per_pixel", r.eye},
+                        {"branches_ns_per_pixel", r.branches},
+                        {"lights_ns_per_pixel", r.lights},
+                        {"classical_ns_per_pixel", r.classical}};
+  }
   return json;
 }
 

@@ -56,12 +56,12 @@ std::vector<SpeedPath> PathsOf(const std::vector<SpeedTarget>& targets) {
 }
 
 TargetResult ResultOf(const SpeedTarget& target, const std::vector<PathSpeed>& speeds,
-                      const ThreadSpeed& threads) {
+                      const ThreadSpeed& threads, const std::optional<Roofline>& roofline) {
   const auto speed = std::find_if(speeds.begin(), speeds.end(),
                                   [&](const PathSpeed& s) { return s.path == target.path; });
   LT_CHECK(speed != speeds.end());
   TargetResult result{target, speed->median_ratio, speed->flight.beyond,
-                      speed->flight.largest_error};
+                      speed->flight.largest_error, roofline};
   if (target.what == What::kLeast) result.measured = speed->least_ratio;
   if (target.what == What::kThreads) {
     result.measured = threads.ratio;
@@ -138,8 +138,17 @@ absl::StatusOr<std::vector<TargetResult>> MeasureTargets(
     if (!measured.ok()) return measured.status();
     threads = *measured;
   }
+  std::optional<Roofline> roofline;
+  if (setting.options.sampling.samples == 1) {
+    WorkerPool pool(setting.threads);
+    const auto measured = StudyRoofline(setting.scene, setting.options, pool);
+    if (!measured.ok()) return measured.status();
+    roofline = *measured;
+  }
   std::vector<TargetResult> results;
-  for (const SpeedTarget& target : targets) results.push_back(ResultOf(target, *speeds, threads));
+  for (const SpeedTarget& target : targets) {
+    results.push_back(ResultOf(target, *speeds, threads, roofline));
+  }
   return results;
 }
 

@@ -2,9 +2,11 @@
 // are. A report: a row that is not met is no error.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/audit/roofline.h"
 #include "core/audit/speed_paths.h"
 
 namespace linetree {
@@ -36,6 +38,9 @@ struct TargetResult {
   double measured = 0;
   uint64_t beyond = 0;  // pixels of its frames, and how far they are off
   double largest_error = 0;
+  // Of its setting. Pixels of several samples have none: some are evaluated once for all of them,
+  // without their rays.
+  std::optional<Roofline> roofline{};
 
   bool IsMet() const { return measured >= target.goal; }
 };

@@ -23,7 +23,8 @@ struct StageSpeed {
   };
   Legs classical;
   Legs warm;  // cached, the last of some frames of the view
-  // Within frames with all stages: tiles that are traced both ways, and cells that are certified.
+  // Within frames with all stages: blocks that are rendered first, to count what trees would save
+  // in them, and cells that are certified.
   struct Learning {
     double probe = 0, learn = 0, all = 0;  // all: the frame
   };

@@ -6,6 +6,7 @@
 #define LINETREE_CORE_FRAME_LIGHTS_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -45,6 +46,8 @@ class CachedLights {
         cells_(reader),
         sheet_(scene, reader, cells_) {
     cells_.CountUses(CountsOthers());
+    // What is booked must not depend on what else this thread has done.
+    if (booked != nullptr || is_booked_) std::fill_n(last_blockers_, scene.lights().size(), -1);
   }
   // Written down, because what is implicit is not compiled for this target.
   HWY_INLINE ~CachedLights() {}

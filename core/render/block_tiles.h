@@ -15,9 +15,12 @@ inline constexpr size_t kTilesInRow = 8;
 inline constexpr uint64_t kAllTiles = ~uint64_t{0};
 static_assert(kTilesOfBlock == 64 && kTilesInRow * kTilesInRow == kTilesOfBlock);
 
-// About so many blocks of a frame are probed, whatever its size; of a small one a quarter.
-inline constexpr size_t kProbedBlocks = 16;
-inline size_t OneProbedIn(size_t blocks) { return std::max<size_t>(4, blocks / kProbedBlocks); }
+// One in so many blocks of a frame is probed: in small frames more of them, so that objects and
+// cells that are seen in few pixels are met as well.
+inline constexpr size_t kMostApart = 16, kLeastApart = 4, kFewProbed = 16;
+inline size_t OneProbedIn(size_t blocks) {
+  return std::clamp(blocks / kFewProbed, kLeastApart, kMostApart);
+}
 // Of a probed block so many tiles are booked.
 inline constexpr size_t kBookedTiles = 4;
 

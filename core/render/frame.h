@@ -49,7 +49,7 @@ struct FrameStats {
 
 // Of wall_ms, in frames by packets (0 in others): what a cached frame spends on learning.
 struct FrameStages {
-  double probe_ms = 0;  // first tiles, traced with the trees and without to count the work of both
+  double probe_ms = 0;  // first blocks, of which some packets are booked, and booking those again
   double learn_ms = 0;  // cells certified
 };
 

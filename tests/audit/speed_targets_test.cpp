@@ -68,6 +68,8 @@ TEST(SpeedTargetsTest, EveryKindIsMeasured) {
   for (const TargetResult& result : results) {
     EXPECT_GT(result.measured, 0);
     EXPECT_EQ(result.beyond, 0u);
+    ASSERT_TRUE(result.roofline.has_value());
+    EXPECT_GT(result.roofline->classical, 0);
   }
   EXPECT_LE(results[2].measured, results[3].measured);
 }
@@ -98,6 +100,7 @@ TEST(SpeedTargetsTest, FramesOfSeveralSamplesAreMeasuredOnTheirOwn) {
   ASSERT_EQ(results.size(), 1u);
   EXPECT_GT(results[0].measured, 0);
   EXPECT_EQ(results[0].beyond, 0u);
+  EXPECT_FALSE(results[0].roofline.has_value()) << "its pixels may do without their rays";
 }
 
 }  // namespace

@@ -17,18 +17,17 @@ constexpr uint64_t kAll = ~uint64_t{0};
 // A frame of which all packets are booked, in blocks that are rendered with what the trees know.
 class BookedPacketsTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!packets_.IsWide()) GTEST_SKIP() << "no vectors";
-  }
-
-  std::vector<BookedPackets> Render(FramePlan& plan, uint64_t tiles = kAll) {
+  // `used`: what blocks are rendered with, one after the other; null: something new for each.
+  std::vector<BookedPackets> Render(FramePlan& plan, uint64_t tiles = kAll,
+                                    PacketWorkspace* used = nullptr) {
     const EyeRays eye_rays(scene_->cameras[0], kSide, kSide);
     std::vector<float> radiance(3 * kSide * kSide);
     const PixelTarget target = {radiance.data()};
     std::vector<BookedPackets> booked;
     for (int row = 0; row < kSide; row += kBlockSide) {
       for (int column = 0; column < kSide; column += kBlockSide) {
-        PacketWorkspace workspace;
+        PacketWorkspace fresh;
+        PacketWorkspace& workspace = used != nullptr ? *used : fresh;
         PacketCounts counts;
         const SurfaceCache::Reader reader(surfaces_, kEpsilon);
         const PacketTracer::Region region = {column, row, kBlockSide, kBlockSide};
@@ -109,6 +108,15 @@ TEST_F(BookedPacketsTest, WithTheSameTreesTheyCostTheSame) {
     Grow();
   }
   EXPECT_GT(surfaces_.CellCount(), 12u);
+}
+
+// Threads have done what comes, and remember it.
+TEST_F(BookedPacketsTest, TheyCostTheSameWhateverTheThreadHasDone) {
+  PacketWorkspace used;
+  FramePlan one = Plan(), other = Plan();
+  Render(one, kAll, &used);
+  Render(other);
+  EXPECT_GT(CountEqual(one, other), 8u);
 }
 
 // Trees that were planted after the packets had been traced learn from them where cells are wanted.

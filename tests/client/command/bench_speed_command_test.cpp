@@ -136,7 +136,12 @@ TEST(BenchSpeedCommand, TargetsAreAReport) {
     EXPECT_EQ(target["scene"], "room:18:3");
     EXPECT_EQ(target["met"], target["measured"] >= target["goal"]);
     EXPECT_EQ(target["beyond"], 0);
+    const auto& roof = target["roofline"];
+    const double kept =
+        roof["eye_ns_per_pixel"].get<double>() + roof["branches_ns_per_pixel"].get<double>();
+    EXPECT_DOUBLE_EQ(roof["best"], roof["classical_ns_per_pixel"].get<double>() / kept);
   }
+  EXPECT_THAT(run.out, HasSubstr("without lights"));
   EXPECT_EQ(targets[0]["goal"], 2.5);
 }
 
