@@ -114,7 +114,7 @@ class Blocks {
   // Says what is to be booked.
   void ChooseProbes();
   FramePlan::Booked BookAgain();
-  // A frame whose trees grow before they are asked for most of it, or only after it.
+  // Whose trees grow before they are asked for most of the frame, or only after it.
   void RenderLearning();
   void RenderSettled();
   void RenderRest();
@@ -130,11 +130,11 @@ class Blocks {
     plan_.SetPromising(is_promising);
     return is_promising && plan_.HopesAny();
   }
-  // Lets trees grow, in stages, for what they promise to save in this frame; returns what they save
-  // of what was booked.
+  // Lets trees grow in stages, for what they promise; returns what they save of what was booked.
   double Earn(double work, double promised);
   // Renders squares of blocks and grows trees for what has been earned.
   void TrySquares(double saved);
+
   const PacketTracer& packets_;
   SurfaceCache& surfaces_;
   FramePlan& plan_;

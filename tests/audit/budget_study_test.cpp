@@ -13,7 +13,9 @@ namespace {
 TEST(BudgetStudy, ComparesFramesOfASmallCacheWithNone) {
   const auto scene = test::BallsOnFloor(5, 3);
   WorkerPool pool(1);
-  BudgetStudyOptions options{.share = 0.25, .frames = {.width = 64, .height = 64, .repeats = 2}};
+  BudgetStudyOptions options{.share = 0.25, .frames = {}};
+  options.frames.width = options.frames.height = 64;
+  options.frames.repeats = 2;
   for (const Lanes lanes : {Lanes::kScalar, Lanes::kSimd}) {
     options.frames.lanes = lanes;
     const auto views = FlightViews(*scene, scene->cameras[0], FlightPattern::kOrbit, 6);
