@@ -318,7 +318,7 @@ void PathCache::SetPolicy(std::string_view name) {
   NoteLedgers();
 }
 
-Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
+Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach, const ParallelLoop& loop) {
   const SceneChange& change = reach.change();
   const std::scoped_lock alone(builders_mutex_, former.builders_mutex_);
   const std::scoped_lock ledgers(ledger_mutex_, former.ledger_mutex_);
@@ -332,7 +332,7 @@ Adopted PathCache::Adopt(PathCache& former, const ChangeReach& reach) {
     adopted.dropped += forest->store.cell_count();
     Forest& own = *OpenForest(forest->limits);
     own.last_used = forest->last_used.load();
-    own.store.Adopt(forest->store, change, BudgetOf(own), [&](PathTree& tree) {
+    own.store.Adopt(forest->store, change, BudgetOf(own), loop, [&](PathTree& tree) {
       tree.cells().Prune(/*covers=*/false,
                          [&](const PathNode& node) { return reach.Touches(tree, node); });
     });

@@ -102,7 +102,7 @@ class PathCache {
                   const ParallelLoop& loop, bool ahead = false);
 
   // As SurfaceCache::Adopt.
-  Adopted Adopt(PathCache& former, const ChangeReach& reach);
+  Adopted Adopt(PathCache& former, const ChangeReach& reach, const ParallelLoop& loop);
 
   // As those of SurfaceCache. Of more path limits than there may be trees for, none are taken back.
   void SetJournal(CellJournal* journal) { journal_ = journal; }

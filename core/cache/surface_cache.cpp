@@ -230,7 +230,8 @@ SurfaceCache::Grown SurfaceCache::Refine(double weight, const ParallelLoop& loop
   return grown;
 }
 
-Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
+Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach,
+                            const ParallelLoop& loop) {
   const SceneChange& change = reach.change();
   const std::scoped_lock alone(builders_mutex_, former.builders_mutex_);
   const std::scoped_lock ledgers(ledger_mutex_, former.ledger_mutex_);
@@ -240,7 +241,7 @@ Adopted SurfaceCache::Adopt(SurfaceCache& former, const ChangeReach& reach) {
   ledger_.Reset();
   former.ledger_.Reset();
   if (change.lights) former.store_.Clear();
-  store_.Adopt(former.store_, change, memory_bytes_, [&](SurfaceTree& tree) {
+  store_.Adopt(former.store_, change, memory_bytes_, loop, [&](SurfaceTree& tree) {
     if (!reach.TouchesShadows(tree.object())) return;
     tree.cells().Prune(
         /*covers=*/true, [&](const SurfaceNode& node) { return reach.TouchesShadows(tree, node); });

@@ -97,7 +97,7 @@ class SurfaceCache {
 
   // Takes over what the cache of a former scene knows and the change has not touched; that one is
   // empty afterwards, and stays so. Before anybody asks this one.
-  Adopted Adopt(SurfaceCache& former, const ChangeReach& reach);
+  Adopted Adopt(SurfaceCache& former, const ChangeReach& reach, const ParallelLoop& loop);
 
   // Tells of cells from now on; it must outlive the cache. Before anybody asks.
   void SetJournal(CellJournal* journal) { journal_ = journal; }

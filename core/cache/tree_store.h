@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/cache/epoch.h"
+#include "core/cache/parallel_loop.h"
 #include "core/math/check.h"
 #include "core/scene/scene_change.h"
 #include "core/tree/cell_tree.h"
@@ -217,29 +218,33 @@ class TreeStore {
   }
 
   // Takes the trees of a former scene's store over, for the objects that are still there and not
-  // altered, without what prune(Tree&) takes out of them, which it returns (CellTree::Prune). The
-  // former store is empty afterwards, this one was before. The budget is the caller's affair.
-  // Renumber(now, Payload&) -> false where what it names is gone.
+  // altered, without what prune(Tree&) takes out of them, which it returns (CellTree::Prune);
+  // `loop` may prune several at once. The former store is empty afterwards, this one was before.
+  // The budget is the caller's affair. Renumber(now, Payload&) -> false where what it names is
+  // gone.
   template <class Fn>
-  void Adopt(TreeStore& former, const SceneChange& change, uint64_t memory_bytes, Fn&& prune) {
+  void Adopt(TreeStore& former, const SceneChange& change, uint64_t memory_bytes,
+             const ParallelLoop& loop, Fn&& prune) {
     const std::unique_ptr<Index> old = former.TakeIndex();
     MakeIndex(memory_bytes);
     if (!old || !index_) return;
-    for (size_t object = 0; object < old->trees.size(); ++object) {
-      const int32_t now = change.now[object];
-      if (!old->trees[object] || now == SceneChange::kGone || change.altered[object]) continue;
-      auto tree = std::make_unique<Tree>(scene_.objects[static_cast<size_t>(now)]);
-      tree->cells() = std::move(old->trees[object]->cells());
-      prune(*tree);
-      if (!change.keeps_indices) {
-        tree->cells().Prune(false,
-                            [&](const Node& node) { return !RenumberPayload(change.now, node); });
+    loop(kAdoptedParts, [&](size_t part) {
+      for (size_t object = part; object < old->trees.size(); object += kAdoptedParts) {
+        const int32_t now = change.now[object];
+        if (!old->trees[object] || now == SceneChange::kGone || change.altered[object]) continue;
+        auto tree = std::make_unique<Tree>(scene_.objects[static_cast<size_t>(now)]);
+        tree->cells() = std::move(old->trees[object]->cells());
+        prune(*tree);
+        if (!change.keeps_indices) {
+          tree->cells().Prune(false,
+                              [&](const Node& node) { return !RenumberPayload(change.now, node); });
+        }
+        const Counts counts = tree->cells().counts();
+        cells_ += counts.Cells();
+        byte_size_ += tree->OwnBytes() + counts.bytes;
+        LT_CHECK(index_->trees[static_cast<size_t>(now)].PutFirst(tree));
       }
-      const Counts counts = tree->cells().counts();
-      cells_ += counts.Cells();
-      byte_size_ += tree->OwnBytes() + counts.bytes;
-      LT_CHECK(index_->trees[static_cast<size_t>(now)].PutFirst(tree));
-    }
+    });
   }
 
   void Clear() { TakeIndex(); }
@@ -283,6 +288,7 @@ class TreeStore {
     size_t object = 0;
     Node* node = nullptr;
   };
+  static constexpr size_t kAdoptedParts = 64;
 
   bool Reserve(uint64_t bytes, uint64_t memory_bytes) {
     uint64_t held = byte_size_.load();

@@ -153,8 +153,13 @@ Adopted SceneHost::Adopt(SceneHost& former) {
   former.cache_.SetMemoryBytes(0);
   plan_.Inherit(former.plan_, change.now);
   SetPolicy(former.policy()).IgnoreError();  // it was good for the former one
-  Adopted all = surfaces_.Adopt(former.surfaces_, reach);
-  const Adopted paths = paths_.Adopt(former.paths_, reach);
+  // Whoever serves frames meanwhile has threads of its own; these live for some milliseconds.
+  WorkerPool pool(0);
+  const ParallelLoop loop = [&pool](size_t count, const std::function<void(size_t)>& body) {
+    pool.ParallelFor(count, body);
+  };
+  Adopted all = surfaces_.Adopt(former.surfaces_, reach, loop);
+  const Adopted paths = paths_.Adopt(former.paths_, reach, loop);
   all.kept += paths.kept;
   all.dropped += paths.dropped;
   return all;
