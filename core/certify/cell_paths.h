@@ -9,11 +9,21 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "core/trace/path_lists.h"
 #include "core/tree/interpolant.h"
 #include "core/tree/verdict.h"
 
 namespace linetree {
+
+// A hit is off by some 2^-52 of the distance from which its ray comes. Certificates allow for that
+// of rays from as far away as the object is from the world's origin, or 256 times its own size
+// (IsAboveRounding in margins-inl.h): farther ones, which see it as a pixel or two, are left to the
+// tracer. World length.
+inline double MaxHitDistance(const Object& object) {
+  const double size = Length(object.bounds.Extent());
+  return std::max(256 * size, size + Length(object.bounds.Center()));
+}
 
 // Why not all rays of a cell certainly meet the same surfaces and lights.
 enum class Doubt : uint8_t {

@@ -37,9 +37,10 @@ bool IsNegative(const CornerJet<D>& f, double scale) {
   return f.hi() < -MarginOf(f, scale);
 }
 
-// Whether a cell is so wide at its hits, on an object with coordinates up to `reach`, that what the
-// classical tracer's are off by is less than kDrift of it. Where it is not, as on small mirrors far
-// from the world's origin, margins do not hold for what the branches meet.
+// Whether a cell is so wide at its hits, with coordinates there and distances to where the rays
+// begin up to `reach`, that what the classical tracer's are off by is less than kDrift of it. Where
+// it is not, as on small mirrors far from the world's origin, margins do not hold for what branches
+// meet.
 template <size_t D>
 bool IsAboveRounding(const JetVector<D>& hits, double reach) {
   const CornerJet<D>* point[3] = {&hits.x, &hits.y, &hits.z};

@@ -26,11 +26,6 @@ struct PathCoords {
   RayCoords coords{};
 };
 
-// A hit is off by some 2^-52 of the distance from which its ray comes. Certificates allow for
-// 2^-34 of the object's reach (margins-inl.h): farther rays than this many times the reach are left
-// to the tracer.
-inline constexpr double kMaxHitDistance = 4096;
-
 class PathTree {
  public:
   using Traits = PathTraits;
@@ -38,9 +33,7 @@ class PathTree {
   using Cell = CellId;
 
   explicit PathTree(const Object& object)
-      : reach_(Length(object.bounds.Extent()) + Length(object.bounds.Center())),
-        chart_(object),
-        cells_(kFacePairs) {}
+      : max_hit_distance_(MaxHitDistance(object)), chart_(object), cells_(kFacePairs) {}
 
   const ObjectChart& chart() const { return chart_; }
   CellTree<PathTraits>& cells() { return cells_; }
@@ -51,7 +44,7 @@ class PathTree {
   // enough, and where the line has no coordinates.
   std::optional<PathCoords> CoordsOf(const Hit& hit, const Vec3d& direction) const {
     if (!hit.first_on_line || hit.side != Side::kOutside) return std::nullopt;
-    if (!(hit.t <= kMaxHitDistance * reach_)) return std::nullopt;
+    if (!(hit.t <= max_hit_distance_)) return std::nullopt;
     const int pair = chart_.PairOf(direction);
     // Measured from the hit: far eyes would otherwise cost the coordinates their last digits.
     const auto coords = chart_.CoordsOf(pair, hit.point, direction);
@@ -65,7 +58,7 @@ class PathTree {
   }
 
  private:
-  double reach_;  // the object's size plus its distance from the origin
+  double max_hit_distance_;
   ObjectChart chart_;
   CellTree<PathTraits> cells_;
 };

@@ -40,6 +40,7 @@ class PathWalk {
     paths_.steps.push_back(eye);
     Leg leg;
     leg.direction = direction;
+    leg.reach = MaxHitDistance(context_.scene.objects[static_cast<size_t>(task_.object)]);
     leg.middle = task_.middle.direction;
     if (task_.parent != nullptr && !task_.parent->steps.empty()) {
       leg.inherited = &task_.parent->steps[0];
@@ -56,7 +57,7 @@ class PathWalk {
     Vec3d middle_origin, middle;  // the same of the centre ray, as the classical tracer has it
     RayStart start;
     int depth = 1;
-    double weight = 1;
+    double weight = 1, reach = 0;         // the latter: how far off or out they begin
     Rgb colour{1, 1, 1};                  // product of the coefficients on the way
     const PathStep* inherited = nullptr;  // of the parent cell
   };
@@ -136,7 +137,8 @@ class PathWalk {
     const bool reflects = task_.limits.Allow(leg.depth, leg.weight, material.reflect);
     const bool transmits = task_.limits.Allow(leg.depth, leg.weight, material.transmit);
     bool total_reflection = false;
-    if ((transmits || reflects) && !IsAboveRounding(hit.point, hit.shape->reach)) {
+    if ((transmits || reflects) &&
+        !IsAboveRounding(hit.point, std::max(leg.reach, hit.shape->reach))) {
       Refuse(Doubt::kBound);
       return;
     }
@@ -198,13 +200,13 @@ class PathWalk {
     next.origin = hit.point;
     next.middle_origin = middle.point;
     next.start = start;
+    next.reach = hit.shape->reach;
     next.depth = leg.depth + 1;
     next.weight = leg.weight;
     next.colour = leg.colour;
     return next;
   }
-  // What the parent cell knows of a ray that leaves from `middle`: its steps there are those of
-  // rays that end where its own centre ray does, which may be elsewhere.
+  // The parent's step for what leaves from `middle`; none where its own centre ray ends elsewhere.
   static const PathStep* ChildOf(const PathStep* step, const Hit& middle,
                                  int32_t PathStep::*child) {
     if (step == nullptr || !step->EndsAt(middle) || step->*child == 0) return nullptr;

@@ -13,6 +13,7 @@
 #include "core/cache/radiance_cache.h"
 #include "core/cache/surface_cache.h"
 #include "tests/support/demo_scenes.h"
+#include "tests/support/sanitizer_share.h"
 
 namespace linetree {
 namespace {
@@ -214,7 +215,7 @@ TEST_P(CacheThreads, ManyPublishThePapersCells) {
   while (Build(alone)) {
   }
   ASSERT_GT(alone.CellCount(), 500u);
-  for (int time = 0; time < 10; ++time) {
+  for (int time = 0; time < 12 / test::kSanitizerShare; ++time) {
     RadianceCache cache(tracer_, {.max_cell_depth = 4});
     std::barrier together(3);
     std::vector<std::thread> threads;
