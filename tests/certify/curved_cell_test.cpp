@@ -10,6 +10,7 @@
 #include "core/certify/diffuse_summer.h"
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
+#include "tests/support/climb.h"
 #include "tests/support/random_scene.h"
 
 namespace linetree {
@@ -76,20 +77,8 @@ double WorstSmoothCase(bool is_sun, bool fades, test::Random& random) {
     best.x[11] = random.Uniform(0.2, 1);
     best.x[12] = random.Unit();
     best.x[13] = random.Unit();
-    double most = best.ErrorOverBound();
-    double step = 1;
-    for (int i = 0; i < 600; ++i) {
-      SmoothCase next = best;
-      for (double& x : next.x) {
-        if (random.Below(2) == 0) x += step * random.Uniform(-1, 1) * (0.1 + std::abs(x));
-      }
-      const double error = next.ErrorOverBound();
-      step = std::clamp(error > most ? 1.5 * step : 0.97 * step, 1e-3, 1.0);
-      if (error <= most) continue;
-      most = error;
-      best = next;
-    }
-    worst = std::max(worst, most);
+    worst = std::max(worst, test::Climb(best, 600, 1e-3, random,
+                                        [](const SmoothCase& of) { return of.ErrorOverBound(); }));
   }
   EXPECT_LE(worst, 1);
   return worst;

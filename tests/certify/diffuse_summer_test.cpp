@@ -8,6 +8,7 @@
 
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
+#include "tests/support/climb.h"
 #include "tests/support/every_target.h"
 #include "tests/support/random_scene.h"
 
@@ -181,20 +182,8 @@ double WorstLampCase(double fade_distance, test::Random& random) {
     LampCase best{{random.LogUniform(0.01, 2), random.Uniform(-6, 6), random.Uniform(-6, 6),
                    random.LogUniform(0.05, 6), random.Unit(), random.Unit()},
                   fade_distance};
-    double most = best.ErrorOverBound();
-    double step = 1;
-    for (int i = 0; i < 1000; ++i) {
-      LampCase next = best;
-      for (double& x : next.x) {
-        if (random.Below(2) == 0) x += step * random.Uniform(-1, 1) * (0.1 + std::abs(x));
-      }
-      const double error = next.ErrorOverBound();
-      step = std::clamp(error > most ? 1.5 * step : 0.97 * step, 1e-3, 1.0);
-      if (error <= most) continue;
-      most = error;
-      best = next;
-    }
-    worst = std::max(worst, most);
+    worst = std::max(worst, test::Climb(best, 1000, 1e-3, random,
+                                        [](const LampCase& of) { return of.ErrorOverBound(); }));
   }
   EXPECT_LE(worst, 1);
   return worst;

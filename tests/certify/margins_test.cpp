@@ -11,6 +11,7 @@
 #include "core/certify/path_certifier.h"
 #include "core/trace/intersect.h"
 #include "core/trace/shade.h"
+#include "tests/support/climb.h"
 #include "tests/support/random_scene.h"
 
 namespace linetree {
@@ -149,19 +150,8 @@ double WorstDrift(size_t balls, double away, test::Random& random) {
       best.x.back() = random.Uniform(-15, -2);
       most = best.DriftOverMargin();
     }
-    double step = 1;
-    for (int i = 0; i < 700; ++i) {
-      Mirrors next = best;
-      for (double& x : next.x) {
-        if (random.Below(2) == 0) x += step * random.Uniform(-1, 1) * (0.1 + std::abs(x));
-      }
-      const double error = next.DriftOverMargin();
-      step = std::clamp(error > most ? 1.5 * step : 0.97 * step, 1e-6, 1.0);
-      if (error <= most) continue;
-      most = error;
-      best = next;
-    }
-    worst = std::max(worst, most);
+    worst = std::max(worst, test::Climb(best, 700, 1e-6, random,
+                                        [](Mirrors& of) { return of.DriftOverMargin(); }));
   }
   return worst;
 }
