@@ -142,6 +142,17 @@ bool RadianceCache::PublishOne(Forest& forest, const Work& work, uint32_t now) {
   return has_room;
 }
 
+bool RadianceCache::MakeRoomAndPublish(const Session& session, const Work& work,
+                                       BuildStats& stats) {
+  const std::lock_guard alone(trees_mutex_);
+  Forest* forest = FindForest(session.forest);
+  if (forest == nullptr) return false;
+  // Somebody else may have made room meanwhile.
+  if (PublishOne(*forest, work, session.now)) return true;
+  stats.cells_evicted += MakeRoom(kCellBytes + forest->GrowthBytes(), session.now);
+  return PublishOne(*forest, work, session.now);
+}
+
 void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>& works,
                                  BuildStats& stats) {
   {
@@ -158,18 +169,7 @@ void RadianceCache::PublishWorks(const Session& session, const std::vector<Work>
   for (size_t i = 0; i < works.size(); ++i) {
     if (forest != nullptr && PublishOne(*forest, works[i], session.now)) continue;
     publishing.unlock();
-    bool is_published = false;
-    {
-      const std::lock_guard alone(trees_mutex_);
-      forest = FindForest(session.forest);
-      if (forest != nullptr) {
-        const uint64_t needed = kCellBytes + forest->GrowthBytes();
-        if (CellBytes() + needed > cell_budget_)
-          stats.cells_evicted += MakeRoom(needed, session.now);
-        is_published = PublishOne(*forest, works[i], session.now);
-      }
-    }
-    if (!is_published) {
+    if (!MakeRoomAndPublish(session, works[i], stats)) {
       stats.cells_dropped += works.size() - i;
       return;
     }

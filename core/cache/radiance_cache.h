@@ -144,6 +144,8 @@ class RadianceCache {
   void PublishWorks(const Session& session, const std::vector<Work>& works, BuildStats& stats);
   // False, and nothing done, where the budget has no room. With the trees' lock, shared or not.
   bool PublishOne(Forest& forest, const Work& work, uint32_t now);
+  // The same where others have to go; false where the forest is gone, too.
+  bool MakeRoomAndPublish(const Session& session, const Work& work, BuildStats& stats);
   // Frees cells not used by this session, least recently used leaves first, until `needed` more
   // bytes fit. Returns how many it evicted. Needs the trees' lock.
   uint64_t MakeRoom(uint64_t needed, uint32_t now);
