@@ -54,7 +54,9 @@ absl::StatusOr<NamedHost> SceneStore::Add(const std::string& name,
   if (former->host) {
     // Outside the lock: it waits for those who read.
     const auto begin = std::chrono::steady_clock::now();
-    added.adopted = added.host->Adopt(*former->host);
+    // Whoever serves frames meanwhile has threads of its own; these live for some milliseconds.
+    WorkerPool pool(0);
+    added.adopted = added.host->Adopt(*former->host, pool);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     added.adopt_ms = took.count();
   }

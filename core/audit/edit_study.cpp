@@ -52,7 +52,7 @@ class EditRun {
   double Become(std::shared_ptr<const Scene> scene, double& dropped_share) {
     auto next = std::make_unique<SceneHost>(std::move(scene));
     const auto begin = std::chrono::steady_clock::now();
-    const Adopted adopted = next->Adopt(*host_);
+    const Adopted adopted = next->Adopt(*host_, pool_);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     const auto all = static_cast<double>(adopted.kept + adopted.dropped);
     dropped_share = all > 0 ? static_cast<double>(adopted.dropped) / all : 0;

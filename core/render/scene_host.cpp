@@ -147,14 +147,12 @@ void SceneHost::Keep(std::shared_ptr<CellJournal> journal) {
   paths_.SetJournal(journal_.get());
 }
 
-Adopted SceneHost::Adopt(SceneHost& former) {
+Adopted SceneHost::Adopt(SceneHost& former, WorkerPool& pool) {
   const SceneChange change = ChangeBetween(former.scene(), scene());
   const ChangeReach reach(scene(), change);
   former.cache_.SetMemoryBytes(0);
   plan_.Inherit(former.plan_, change.now);
   SetPolicy(former.policy()).IgnoreError();  // it was good for the former one
-  // Whoever serves frames meanwhile has threads of its own; these live for some milliseconds.
-  WorkerPool pool(0);
   const ParallelLoop loop = [&pool](size_t count, const std::function<void(size_t)>& body) {
     pool.ParallelFor(count, body);
   };

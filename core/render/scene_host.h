@@ -75,9 +75,10 @@ class SceneHost {
 
   // Takes over what the host of a former scene has learnt and the change from that scene to this
   // one has not touched: of surface trees, certified linetrees and the planner. The former one goes
-  // on answering, without cache. Before this one answers anybody. n log n for n objects, and a look
-  // at every cell of an object that reflects or transmits.
-  Adopted Adopt(SceneHost& former);
+  // on answering, without cache. Before this one answers anybody; the pool looks at several objects
+  // at once. n log n for n objects, and a look at every cell of an object that reflects or
+  // transmits.
+  Adopted Adopt(SceneHost& former, WorkerPool& pool);
 
   // Who is to hear of cells of surface trees and certified linetrees, and lives with this host.
   // Before it answers anybody.

@@ -112,7 +112,7 @@ TEST(AdoptTest, EditedScenesAnswerAsIfTheyHadAlwaysBeenSo) {
     for (int edit = 0; edit < 6; ++edit) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " edit " << edit);
       auto next = std::make_unique<SceneHost>(Edited(host->scene(), random), Options());
-      const Adopted adopted = next->Adopt(*host);
+      const Adopted adopted = next->Adopt(*host, pool);
       all.kept += adopted.kept;
       all.dropped += adopted.dropped;
       EXPECT_EQ(next->surfaces().ByteSize(), next->surfaces().CountBytes());
@@ -172,7 +172,7 @@ TEST(AdoptTest, WhatIsKnownOfPathsIsKeptOrDroppedRightly) {
         next->objects[ball].material = random.Below(3);
       }
       auto successor = std::make_unique<SceneHost>(next);
-      successor->Adopt(*host);
+      successor->Adopt(*host, pool);
       kept += successor->paths().CellCount();
       EXPECT_EQ(successor->paths().ByteSize(), successor->paths().CountBytes());
       host = std::move(successor);
@@ -189,7 +189,7 @@ TEST(AdoptTest, TheFormerHostGoesOnAnswering) {
   SceneHost former(CrowdedScene(random, 20));
   Warm(former, Lanes::kScalar, 0, pool);
   SceneHost next(Edited(former.scene(), random));
-  next.Adopt(former);
+  next.Adopt(former, pool);
   ExpectClassical(former, Lanes::kScalar, pool);
   EXPECT_EQ(former.CacheBytes(), 0u);
 }
@@ -221,7 +221,7 @@ TEST(AdoptTest, OnlyWhatTheChangeTouchesIsDropped) {
   const uint64_t cells = former.surfaces().CellCount();
   ASSERT_GT(cells, 30u);
   SceneHost next(Rooms(-0.2));
-  const Adopted adopted = next.Adopt(former);
+  const Adopted adopted = next.Adopt(former, pool);
   EXPECT_EQ(adopted.kept + adopted.dropped, cells);
   EXPECT_GT(adopted.kept, cells / 2);
   EXPECT_GT(adopted.dropped, 0u);
@@ -237,7 +237,7 @@ TEST(AdoptTest, OtherPaintDropsOnlyTheObjectsOwnTree) {
   auto painted = Rooms(-0.4);
   painted->objects[10].material = test::AddMaterial(*painted, test::Matte({0.9, 0.1, 0.1}));
   SceneHost next(painted);
-  EXPECT_EQ(next.Adopt(former).dropped, own);
+  EXPECT_EQ(next.Adopt(former, pool).dropped, own);
   ExpectClassical(next, Lanes::kScalar, pool);
 }
 
