@@ -207,7 +207,6 @@ void Encode(const SurfacePlace& place, const CellLights& lights, ByteWriter& out
   for (const ShadowFunction& function : lights.functions) Put(function, out);
   for (const auto& sum : lights.sums) Put(sum.get(), out);
   out.Put(lights.unsummed);
-  out.Put(lights.is_decided);
 }
 
 KeptSurfaceCell DecodeSurfaceCell(const Scene& scene, ByteReader& in) {
@@ -240,7 +239,6 @@ KeptSurfaceCell DecodeSurfaceCell(const Scene& scene, ByteReader& in) {
   }
   for (auto& sum : lights->sums) sum = GetSum(in);
   lights->unsummed = in.Get<uint32_t>();
-  lights->is_decided = in.Get<uint8_t>() == 1;
   if (!in.ok()) return cell;
   lights->lights.shrink_to_fit();
   lights->contacts.shrink_to_fit();

@@ -179,6 +179,7 @@ struct LightFindings {
     plane = planar;
     parent = larger;
     child = -1;
+    builds_anew = false;
     views.Begin(hull);
     contacts.clear();
     objects.clear();

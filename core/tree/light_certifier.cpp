@@ -218,7 +218,8 @@ LightKnowledge LightCertifier::Decide(const LightBundle& bundle, LightFindings& 
 LightArrival LightCertifier::ArrivalOf(int object, const PatchHull& hull, int light) const {
   LightBundle bundle(object, hull, world_);
   bundle.Aim(light, scene_.lights[static_cast<size_t>(light)]);
-  LightFindings findings;
+  // Room that the lights of this thread use one after the other.
+  thread_local LightFindings findings;
   findings.views.Begin(hull);
   FindCandidates(bundle, LightList(), findings);
   LightArrival arrival{Decide(bundle, findings)};
@@ -308,7 +309,6 @@ CellLights LightCertifier::Certify(int object, const SurfaceChart& chart, int pa
   }
   const bool has_back = IsSolid(scene_.objects[static_cast<size_t>(object)].shape) &&
                         IsBlack(scene_.MaterialOf(object).transmit);
-  bool is_decided = true;
   for (size_t i = 0; i < count; ++i) {
     LightList& list = cell.lights[i];  // as it is inherited
     list.summed = false;
@@ -320,9 +320,7 @@ CellLights LightCertifier::Certify(int object, const SurfaceChart& chart, int pa
     }
     bundle.Aim(static_cast<int>(i), light);
     list = CertifyLight(bundle, list, findings);
-    is_decided = is_decided && list.IsDecided();
   }
-  cell.is_decided = is_decided;
   Finish(findings, cell);
   return cell;
 }

@@ -96,15 +96,16 @@ struct CellLights {
   uint32_t unsummed = 0;
 
   bool HasFunctions() const { return !functions.empty(); }
-  bool is_decided = false;  // no smaller piece could know more
-  bool IsDecided() const { return is_decided; }
+  // No smaller piece could know more.
+  bool IsDecided() const { return undecided_ == 0; }
   // Whether smaller cells would make answers cheaper.
   bool WantsSmaller() const { return unsummed >= kMinUnsummed || !IsDecided(); }
   // Of such a cell: how many times as many points it takes before that is worth its price as where
   // candidates have to be tested. Shadow functions answer at little cost, so what matters is how
   // many lights a division could decide, against the price of four cells. 1 at least.
   double Patience() const;
-  // Finds out what Patience needs, when what is known of the lights and the functions are final.
+  // Finds out what IsDecided and Patience need, when what is known of the lights and the functions
+  // are final.
   void Weigh();
   // Sets `tasks`, when all else is final.
   void MakeTasks(const Scene& scene);
