@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/client/command/program.h"
@@ -34,7 +33,7 @@ TEST(BenchCommand, AccuracyCountsPixelsBeyondEpsilon) {
                    "96", "--height", "96", "--epsilons", "0.5,0.1", "--json", dir.File("a.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("of 36,864 pixels beyond epsilon"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("a.json")));
+  const auto json = ReadJson(dir.File("a.json"));
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0]["pixels"], 9216);
   EXPECT_GT(json[0]["warm"]["success"], 0);
@@ -48,7 +47,7 @@ TEST(BenchCommand, PaperPrintsItsTablesAsTextAndJson) {
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("Table 1: face, epsilon 0.25"));
   EXPECT_THAT(run.out, HasSubstr("Table 3: room, first frame, epsilon 0.00"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
+  const auto json = ReadJson(dir.File("p.json"));
   EXPECT_EQ(json["tables"].size(), 8u);
   EXPECT_EQ(json["tables"][2]["rows"].size(), 5u);
   EXPECT_EQ(json["tables"][2]["rows"][0]["printed"]["success"], 0.76);
@@ -89,7 +88,7 @@ TEST(BenchCommand, AuditFindsNothingInCertifiedAnswers) {
   ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("gap.textproto"));
   EXPECT_THAT(run.out, HasSubstr("0 violations in "));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("audit.json")));
+  const auto json = ReadJson(dir.File("audit.json"));
   EXPECT_EQ(json["rows"].size(), 12u);
   EXPECT_EQ(json["scenes"], 3);
   EXPECT_EQ(json["total"]["violations"], 0);
@@ -105,7 +104,7 @@ TEST(BenchCommand, AuditEndsWithOneWhenAnAnswerBreaksThePromise) {
                               "walls", "--epsilon", "0.02", "--json", dir.File("audit.json")}));
   EXPECT_EQ(run.exit_status, 1) << run.out;
   EXPECT_THAT(run.out, HasSubstr("\nscene=\"walls 0x"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("audit.json")));
+  const auto json = ReadJson(dir.File("audit.json"));
   EXPECT_GT(json["total"]["violations"], 0);
   ASSERT_FALSE(json["violations"].empty());
   EXPECT_LE(json["violations"].size(), 20u);
@@ -131,7 +130,7 @@ TEST(BenchCommand, CertifyPrintsItsThreeTables) {
   EXPECT_THAT(run.out, HasSubstr("Random 4D cells"));
   EXPECT_THAT(run.out, HasSubstr("Lights over "));
   EXPECT_THAT(run.out, HasSubstr("\n0 violations\n"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("c.json")));
+  const auto json = ReadJson(dir.File("c.json"));
   ASSERT_EQ(json["cells"].size(), 10u);  // five edges in each of two families
   // Smaller cells are certified more often; what is certified is looked at.
   EXPECT_GT(json["cells"][4]["same_paths"], json["cells"][0]["same_paths"]);
@@ -186,7 +185,7 @@ TEST(BenchPoliciesCommand, ReplaysFlightsWithEveryPolicy) {
                                     "--svg",    dir.File("p.svg")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("To reach: the best policy at most 1.15 x the bound: "));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
+  const auto json = ReadJson(dir.File("p.json"));
   EXPECT_EQ(json["contests"].size(), 2u * 3);
   ASSERT_EQ(json["rows"].size(), 2u * 3 * 15);
   double least = 2;
@@ -200,7 +199,7 @@ TEST(BenchPoliciesCommand, ReplaysFlightsWithEveryPolicy) {
   const Finished sim = RunLinetree({"cache", "sim", "--trace", dir.File("room_orbit.trace"),
                                     "--policy", "fifo", "--json", dir.File("s.json")});
   ASSERT_EQ(sim.exit_status, 0) << sim.err;
-  const auto again = nlohmann::json::parse(std::ifstream(dir.File("s.json")));
+  const auto again = ReadJson(dir.File("s.json"));
   ASSERT_EQ(again.size(), 3u);
   for (size_t i = 0; i < again.size(); ++i) {
     EXPECT_EQ(json["rows"][i]["policy"], "fifo");

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "tests/client/command/program.h"
 
@@ -47,7 +46,7 @@ TEST(BenchPeersCommand, ComparesThePicturesOfAllThatAreThere) {
   EXPECT_THAT(run.out, AllOf(HasSubstr("peak, 48 x 32, 1 picture each\n"),
                              HasSubstr("gap, 48 x 32, 1 picture each\n"), HasSubstr("ns/pixel")));
   EXPECT_TRUE(std::filesystem::exists(dir.File("gap_classical.png")));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("p.json")));
+  const auto json = ReadJson(dir.File("p.json"));
   ASSERT_EQ(json["scenes"].size(), 2u);
   const auto& peers = json["scenes"][1]["peers"];
   EXPECT_EQ(peers[0]["peer"], "classical");

@@ -1,9 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "tests/client/command/program.h"
 
 namespace linetree {
@@ -24,7 +21,7 @@ TEST(BenchRaysCommand, PrintsBothKindsOfBatches) {
   ASSERT_EQ(run.exit_status, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("face     coherent"));
   EXPECT_THAT(run.out, HasSubstr("balls_2  incoherent"));
-  const auto json = nlohmann::json::parse(std::ifstream(dir.File("r.json")));
+  const auto json = ReadJson(dir.File("r.json"));
   ASSERT_EQ(json["scenes"].size(), 2u);
   for (const auto& scene : json["scenes"]) {
     EXPECT_EQ(scene["coherent"]["taken"], "as given");

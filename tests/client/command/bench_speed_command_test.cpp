@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/client/command/program.h"
@@ -19,10 +18,6 @@ Finished BenchSpeed(std::vector<std::string> more, const std::string& side = "32
                                     "--repeat", "1",     "--frames", "2",  "--flight", "3"};
   for (std::string& word : more) words.push_back(std::move(word));
   return RunLinetree(words);
-}
-
-nlohmann::json ReadJson(const std::string& path) {
-  return nlohmann::json::parse(std::ifstream(path));
 }
 
 TEST(BenchSpeedCommand, ComparesTheTracers) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "core/io/camera_path.h"
 #include "core/io/exr.h"
@@ -30,7 +29,7 @@ TEST(FlyCommand, WritesEveryFrameAndATable) {
                                                 "f_02.png", "f_03.png", "s.json"));
   // A title and a line for every frame.
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 4) << run.out;
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir.File("s.json")))["frames"].size(), 3u);
+  EXPECT_EQ(ReadJson(dir.File("s.json"))["frames"].size(), 3u);
 }
 
 TEST(FlyCommand, ExplainsTheLastFramesPlan) {

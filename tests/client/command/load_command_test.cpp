@@ -32,7 +32,7 @@ TEST(LoadCommand, CountsEveryFrameOfEveryClient) {
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("clients     3"));
   EXPECT_THAT(run.out, HasSubstr("latency"));
-  const nlohmann::json json = nlohmann::json::parse(std::ifstream(dir.File("l.json")));
+  const nlohmann::json json = ReadJson(dir.File("l.json"));
   EXPECT_EQ(json["frames"], 12);
   EXPECT_EQ(json["clients"], 3);
   EXPECT_GT(json["hit_rate"], 0.0);
@@ -51,7 +51,7 @@ TEST(LoadCommand, ADurationEndsIt) {
                               "100000000", "-q", "--stats", dir.File("l.json")}))
                 .exit_status,
             0);
-  const nlohmann::json json = nlohmann::json::parse(std::ifstream(dir.File("l.json")));
+  const nlohmann::json json = ReadJson(dir.File("l.json"));
   EXPECT_LT(json["frames"], 100000000);
 }
 
@@ -71,7 +71,7 @@ TEST(LoadCommand, AServersFramesAreTakenApart) {
   Finished ended = run({"--warm-up", "2", "--stats", stats, "--csv", dir.File("l.csv"), "--html",
                         dir.File("l.html"), "--objective", "refused=0"});
   ASSERT_EQ(ended.exit_status, 0) << ended.err;
-  nlohmann::json json = nlohmann::json::parse(std::ifstream(stats));
+  nlohmann::json json = ReadJson(stats);
   EXPECT_EQ(json["frames"], 12);
   EXPECT_EQ(json["warm_up"]["frames"], 6);
   EXPECT_GT(json["warm_up"]["cells_built"], 0);
@@ -86,14 +86,14 @@ TEST(LoadCommand, AServersFramesAreTakenApart) {
   ended = run({"--rate", "1000", "--arrivals", "poisson", "--compare", stats, "--stats", stats,
                "--objective", "p99_ms=0"});
   EXPECT_EQ(ended.exit_status, 3) << ended.err;
-  json = nlohmann::json::parse(std::ifstream(stats));
+  json = ReadJson(stats);
   EXPECT_EQ(json["frames"], 12);
   EXPECT_TRUE(json["compared"].contains("p99_ms"));
   EXPECT_EQ(json["objectives"][0]["met"], false);
 
   ended = run({"--stream", "--stats", stats});
   EXPECT_EQ(ended.exit_status, 0) << ended.err;
-  json = nlohmann::json::parse(std::ifstream(stats));
+  json = ReadJson(stats);
   EXPECT_EQ(json["frames"], 12);
   EXPECT_GT(json["render_ms"]["p50"], 0.0);
 }

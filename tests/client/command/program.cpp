@@ -52,6 +52,10 @@ class FileActions {
 
 }  // namespace
 
+nlohmann::json ReadJson(const std::string& path) {
+  return nlohmann::json::parse(std::ifstream(path));
+}
+
 std::string SourceFile(const std::string& path) {
   return std::string(LINETREE_SOURCE_DIR) + "/" + path;
 }

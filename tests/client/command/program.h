@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Finished {
 
 // `linetree` with these arguments, to its end. Standard input is `in`.
 Finished RunLinetree(const std::vector<std::string>& arguments, const std::string& in = "");
+
+// What a program wrote there.
+nlohmann::json ReadJson(const std::string& path);
 
 // A file of the source tree.
 std::string SourceFile(const std::string& path);

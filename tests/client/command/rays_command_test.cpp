@@ -70,7 +70,7 @@ TEST(RaysCommand, JsonHasAnswersAndCounters) {
   EXPECT_EQ(json["rays"][1]["object"], -1);
   EXPECT_EQ(json["rays"][1]["source"], "background");
   EXPECT_EQ(json["stats"]["pixels"], 2);
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir.File("s.json"))), json["stats"]);
+  EXPECT_EQ(ReadJson(dir.File("s.json")), json["stats"]);
 }
 
 TEST(RaysCommand, RaysGoByPacketsToo) {

@@ -23,10 +23,6 @@ std::vector<std::string> Render(const std::string& scene, std::vector<std::strin
   return more;
 }
 
-nlohmann::json ReadJson(const std::string& path) {
-  return nlohmann::json::parse(std::ifstream(path));
-}
-
 TEST(RenderCommand, WritesPicturesAndCountersThatAgree) {
   TempDir dir;
   const Finished run =

@@ -125,7 +125,7 @@ TEST_F(ServerCommand, AFlightMayKeepTheNewestViewpointOnly) {
                       "--height", "90", "--newest", "100000", "--codec", "jpeg", "-o",
                       dir_.File("v_%03d.jpg"), "--stats", dir_.File("fly.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
-  const auto fly = nlohmann::json::parse(std::ifstream(dir_.File("fly.json")));
+  const auto fly = ReadJson(dir_.File("fly.json"));
   EXPECT_EQ(fly["viewpoints"], 200);
   EXPECT_LT(fly["frames"].size(), 200u);
   EXPECT_EQ(dir_.Names().size(), fly["frames"].size() + 1);
@@ -136,7 +136,7 @@ TEST_F(ServerCommand, AFlightMayKeepTheNewestViewpointOnly) {
              "--stream", "--newest", "100000", "--codec", "jpeg", "--priority", "background", "-q",
              "--stats", dir_.File("load.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
-  const auto load = nlohmann::json::parse(std::ifstream(dir_.File("load.json")));
+  const auto load = ReadJson(dir_.File("load.json"));
   EXPECT_EQ(load["frames"].get<int>() + load["overtaken"].get<int>(), 200);
   EXPECT_GE(load["frames"], 2);
   EXPECT_EQ(Run({"load", "--scene", "gap", "--path", path, "--newest", "9"}).exit_status, 2);
@@ -165,7 +165,7 @@ TEST_F(ServerCommand, FliesOverOneStream) {
            "--height", "32", "-o", dir_.File("f_%d.exr"), "--stats", dir_.File("s.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
   EXPECT_TRUE(std::filesystem::exists(dir_.File("f_4.exr")));
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir_.File("s.json")))["frames"].size(), 4u);
+  EXPECT_EQ(ReadJson(dir_.File("s.json"))["frames"].size(), 4u);
 }
 
 TEST_F(ServerCommand, Rays) {
@@ -180,7 +180,7 @@ TEST_F(ServerCommand, Load) {
            "--clients", "3", "--frames", "2", "--width", "16", "--height", "16", "--stats",
            dir_.File("l.json")});
   ASSERT_EQ(run.exit_status, 0) << run.err;
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(dir_.File("l.json")))["frames"], 6);
+  EXPECT_EQ(ReadJson(dir_.File("l.json"))["frames"], 6);
 }
 
 TEST_F(ServerCommand, StatsShowWhatWasDone) {
