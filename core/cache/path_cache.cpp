@@ -1,6 +1,7 @@
 #include "core/cache/path_cache.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <tuple>
 #include <utility>
@@ -234,7 +235,7 @@ void PathCache::NoteLedgers() {
 }
 
 uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> samples, double weight,
-                           const ParallelLoop& loop, bool ahead) {
+                           const ParallelLoop& loop, bool ahead, double kept_uses) {
   const std::shared_lock building(builders_mutex_);
   const uint32_t now = ++clock_;
   uint64_t certified = 0;
@@ -249,8 +250,9 @@ uint64_t PathCache::Refine(const PathLimits& limits, std::span<const Sample> sam
     std::vector<Group> groups = GroupByLeaf(forest, samples);
     while (!groups.empty()) {
       for (const Group& group : groups) {
-        group.node->uses +=
-            static_cast<uint32_t>(static_cast<double>(group.samples.size()) * weight);
+        group.node->uses = static_cast<uint32_t>(
+            std::lround(kept_uses * group.node->uses) +
+            static_cast<int64_t>(static_cast<double>(group.samples.size()) * weight));
       }
       Certify(forest, groups, loop, allowance);
       const std::vector<Sample> next = Publish(forest, std::move(groups), ahead, certified);

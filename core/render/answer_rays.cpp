@@ -289,7 +289,7 @@ void Batch::TraceWithTrees(CertifiedTrees& trees) {
     };
     if (!is_last) {
       paths = trees.paths.Refine(options_.limits, samples, std::min(weight, kMostPathUsesOfRay),
-                                 counted, options_.ahead);
+                                 counted, options_.ahead, KeptUses(rays_.size()));
     }
     stats_.cells_tried += surfaces.cells + tried_paths;
     stats_.cells_accepted += surfaces.cells + paths;

@@ -55,10 +55,10 @@ class PathCacheTest : public testing::Test {
     }
     return known;
   }
-  uint64_t Refine(PathCache& cache, uint64_t seed, double weight) {
+  uint64_t Refine(PathCache& cache, uint64_t seed, double weight, double kept_uses = 1) {
     std::vector<PathCache::Sample> samples;
     Use(cache, Rays(seed, 500), {}, &samples);
-    return cache.Refine({}, samples, weight, kSerial);
+    return cache.Refine({}, samples, weight, kSerial, /*ahead=*/false, kept_uses);
   }
 
   Scene scene_;
@@ -80,6 +80,15 @@ TEST_F(PathCacheTest, FewRaysAreNotWorthACell) {
   // But those of many frames are.
   for (int i = 0; i < 20; ++i) Refine(cache, 1, 0.02);
   EXPECT_GT(cache.CellCount(), 0u);
+}
+
+TEST_F(PathCacheTest, FewRaysOfEveryFrameAreNotWorthACellEither) {
+  PathCache cache(tracer_, 10'000'000, kDepth);
+  for (int i = 0; i < 100; ++i) Refine(cache, 1, 0.02, 0.5);
+  EXPECT_EQ(cache.CellCount(), 0u);
+  EXPECT_EQ(KeptUses(0), 1);
+  EXPECT_GT(KeptUses(100), 0.99) << "requests of few rays say little";
+  EXPECT_EQ(KeptUses(512 * 512), 0.5);
 }
 
 TEST_F(PathCacheTest, OtherLimitsHaveOtherTrees) {

@@ -293,5 +293,26 @@ TEST(SceneHostSharingTest, TheSameFramesOnceMoreBuildFewCellsOnSurfaces) {
   EXPECT_LT(static_cast<double>(cells[1]), 1.1 * static_cast<double>(cells[0]));
 }
 
+// Cells of linetrees do not become finer for ever because rays come by again and again.
+TEST(SceneHostSharingTest, ManyWhoFlyTheSamePathDoNotBuildManyTimesTheCellsOfLinetrees) {
+  auto scene = std::make_shared<Scene>(*test::BallsOnFloor(8, 70));
+  for (Material& material : scene->materials) material.reflect = {0.5, 0.5, 0.5};
+  SceneHost host(scene);
+  WorkerPool pool(2);
+  uint64_t cells[2];
+  for (uint64_t& count : cells) {
+    for (int view = 0; view < 12; ++view) {
+      FrameRequest request;
+      request.camera = scene->cameras[0];
+      request.camera.eye.x += 0.2 * (view % 3);
+      request.width = request.height = 256;
+      ASSERT_TRUE(host.RenderFrame(request, pool).ok());
+    }
+    count = host.paths().CellCount();
+  }
+  EXPECT_GT(cells[0], 50u);
+  EXPECT_LT(static_cast<double>(cells[1]), 1.1 * static_cast<double>(cells[0]));
+}
+
 }  // namespace
 }  // namespace linetree
