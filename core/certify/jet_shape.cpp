@@ -20,6 +20,19 @@ double RadiusOf(const AffineFrame& frame) {
   return 1 / std::sqrt(square);
 }
 
+// JetShape::slant.
+double SlantOf(const FrustumShape& s) {
+  const Mat3& m = s.frame.object_from_world;
+  const double across = LengthSquared(m.row[0]), along = LengthSquared(m.row[2]);
+  const auto is_near = [&](double x, double square) { return std::abs(x) <= kSimilarity * square; };
+  const bool keeps = is_near(LengthSquared(m.row[1]) - across, across) &&
+                     is_near(Dot(m.row[0], m.row[1]), across) &&
+                     is_near(Dot(m.row[0], m.row[2]), std::sqrt(across * along)) &&
+                     is_near(Dot(m.row[1], m.row[2]), std::sqrt(across * along));
+  const double taper = s.top_radius - s.base_radius;
+  return keeps ? std::sqrt(across + along * taper * taper) : 0;
+}
+
 // The plane where object coordinate `axis` is `value`, outwards to the side `sign`.
 Plane FramePlane(const AffineFrame& frame, int axis, double value, double sign) {
   Vec3d p;
@@ -48,6 +61,7 @@ struct Maker {
     shape.base_radius = s.base_radius;
     shape.taper = s.top_radius - s.base_radius;
     shape.open = s.open;
+    shape.slant = SlantOf(s);
     shape.planes = {FramePlane(s.frame, 2, 0, -1), FramePlane(s.frame, 2, 1, 1)};
   }
   void operator()(const DiscShape& s) {

@@ -33,6 +33,11 @@ struct JetShape {
   std::vector<double> heights;
   // kSphere: the radius if the frame only scales and turns, or else 0.
   double radius = 0;
+  // kFrustum, if the frame keeps right angles and circles: the length of the surface's gradient,
+  // halved and in the world, per w; otherwise 0. At hits x^2 + y^2 = w^2, so that it is
+  // sqrt(a^2 (x^2 + y^2) + b^2 (w taper)^2) = w sqrt(a^2 + b^2 taper^2), a and b the frame's
+  // scales.
+  double slant = 0;
   // Largest coordinate of the object's bounds plus its size: what margins are relative to.
   double reach = 0;
 

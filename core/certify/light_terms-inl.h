@@ -1,6 +1,6 @@
 // What the lights add to the radiance of a bundle's hits, in jets; formulas as in
 // core/trace/shade.h but arranged so that jets stay narrow (DESIGN, section 5): n.(L - x) is
-// constant on a plane and linear on a sphere, (n.h)^2 = (n.l + n.v)^2 / (2 + 2 l.v).
+// constant on a plane and, but for the gradient's length, linear on a quadric.
 #if defined(LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
 #undef LINETREE_CORE_CERTIFY_LIGHT_TERMS_INL_H_
@@ -12,6 +12,7 @@
 
 #include "core/certify/cell_paths.h"
 #include "core/certify/fading_jet-inl.h"
+#include "core/certify/highlight_jet-inl.h"
 #include "core/certify/jet_hit-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"
@@ -109,15 +110,14 @@ class LightTerms {
  private:
   // n.(L - x), or n.l for a directional light.
   Jet Facing(const JetHit<D>& hit, const Light& light) const {
-    if (light.kind == LightKind::kDirectional) return hit.NormalDot(light.to_light);
-    const JetShape& shape = *hit.shape;
-    if (hit.flat) {
-      return Jet::Constant(SignedDistance(*shape.PlaneOf(hit.face), light.position) * hit.sign);
+    const bool directional = light.kind == LightKind::kDirectional;
+    if (hit.curved) {
+      return directional ? hit.CurvedFacingTo(light.to_light) : hit.CurvedFacing(light.position);
     }
-    if (shape.radius > 0) {
-      // On a sphere x = c + r n': n'.(L - x) = n'.(L - c) - r, n' = the object point turned.
-      const Vec3d l = shape.frame.object_from_world * (light.position - shape.frame.center);
-      return (Dot(hit.object_point, l) + -1.0) * (shape.radius * hit.sign);
+    if (directional) return hit.NormalDot(light.to_light);
+    if (hit.flat) {
+      const Plane& plane = *hit.shape->PlaneOf(hit.face);
+      return Jet::Constant(SignedDistance(plane, light.position) * hit.sign);
     }
     return -Dot(hit.normal, hit.point - light.position);
   }
@@ -147,17 +147,17 @@ class LightTerms {
   bool AddLight(const JetHit<D>& hit, const Vector& direction, const Light& light,
                 const Material& material, const Rgb& arriving, bool faces) {
     const Jet facing = Facing(hit, light);
-    // direction.(L - x), of a directional light direction.l.
     const bool shines = !IsBlack(material.specular);
-    Jet along, cosine = facing, strength = Jet::Constant(1);
+    Jet cosine = facing, strength = Jet::Constant(1);
+    Vector to_light;
     if (light.kind == LightKind::kDirectional) {
-      if (shines) along = Dot(direction, light.to_light);
+      if (shines) to_light = Vector::Constant(light.to_light);
     } else {
       const Vector segment = -(hit.point - light.position);
       const Jet square = SquaredDistance(hit, light, segment);
       if (!IsPositive(square, square.hi())) return false;
       const Jet inverse = InverseSquareRoot(square);
-      if (shines) along = Jet(Dot(direction, segment)) * inverse;
+      if (shines) to_light = segment * inverse;
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         if (!FadeOver(light, square, strength)) return false;
@@ -168,11 +168,15 @@ class LightTerms {
     const auto faded = [&](const Jet& f) -> Jet { return fades ? Jet(f * strength) : f; };
     if (!IsBlack(material.diffuse)) {
       const Jet light_term = faded(cosine);
-      sum_.Add(arriving * material.diffuse, faces ? light_term : Positive(light_term));
+      if (faces) {
+        sum_.Add(arriving * material.diffuse, light_term);
+      } else {
+        sum_.Add(arriving * material.diffuse, Positive(light_term), ExcessOfPositive(light_term));
+      }
     }
     if (!shines) return true;
     Jet highlight;
-    if (!Highlight(hit, -along, cosine, material.exponent, highlight)) return false;
+    if (!HighlightOf(hit, direction, to_light, cosine, material.exponent, highlight)) return false;
     highlight = faded(highlight);
     sum_.Add(arriving * material.specular, faces ? highlight : BrokenOff(highlight));
     return true;
@@ -193,49 +197,33 @@ class LightTerms {
     return square;
   }
 
-  // A function that is not smooth, by its corners and range. All of the error of interpolating it
-  // is in `slack`; for sums only, since nothing else may be done to such a jet.
-  static Jet Rough(const typename Jet::Corners& k, double least, double most, double error) {
+  // max(0, f), interpolated between max(0, k), for sums only. The interpolant Q+ is no less than
+  // max(0, Q), being the mean of a convex function, and where the corners k lie in [-n, p] no more
+  // than the chord of max(0, .) over that interval at Q, which exceeds max(0, Q) by n p / (n + p)
+  // at most. With f - Q in [-L, U] at some place, U and L not negative, max(0, f) - max(0, Q) is in
+  // [-L, U], too. So Q+ is below max(0, f) by at most U, and above it by at most L and that excess.
+  static Jet Positive(const Jet& f) {
+    const Pack<D> zero = Pack<D>::All(0);
+    const IntervalPack<D> s = f.s();
     Jet r;
-    r.v = {least, most};
-    r.k = k;
-    r.slack = std::min(error, RoundUp(most - least));
-    r.ds = IntervalPack<2 * D>::All({0, 0});
+    r.v = {std::max(0.0, f.lo()), std::max(0.0, f.hi())};
+    r.k = Max(Pack<Jet::kCorners>::All(0), f.k);
+    r.slack = f.slack;
+    r.ds = Combine(IntervalPack<D>::All({0, 0}), IntervalPack<D>{Min(zero, s.lo), Max(zero, s.hi)});
     return r;
   }
-  // max(0, f), interpolated between max(0, k). With corners k in [-n, p], chord of max(0, .) over
-  // that interval: the interpolant Q+ is no less than max(0, Q), being the mean of a convex
-  // function, and no more than the chord at Q, which exceeds max(0, Q) by n p / (n + p) at most;
-  // and max(0, Q) is no farther from max(0, f) than Q is from f.
-  static Jet Positive(const Jet& f) {
+  static double ExcessOfPositive(const Jet& f) {
     const double n = std::max(0.0, -SmallestLane(f.k)), p = std::max(0.0, LargestLane(f.k));
-    const double chord = n > 0 && p > 0 ? n * (p / (n + p)) : 0;
-    const auto corners = Max(Pack<Jet::kCorners>::All(0), f.k);
-    return Rough(corners, std::max(0.0, f.lo()), std::max(0.0, f.hi()),
-                 Above(f.InterpolationError() + chord));
+    return n > 0 && p > 0 ? Above(n * (p / (n + p))) : 0;
   }
   // f at some rays and 0 at the others: anything in its range.
   static Jet BrokenOff(const Jet& f) {
     const double most = std::max(0.0, f.hi());
-    return Rough(Pack<Jet::kCorners>::All(most / 2), 0, most, Above(most / 2));
+    Jet r = Jet::Constant(most / 2);
+    r.v = {0, most};
+    r.slack = Above(most / 2);
+    return r;
   }
-
-  // `opening` is l.v, the cosine between the light and the way back.
-  static bool Highlight(const JetHit<D>& hit, Jet opening, const Jet& cosine, double exponent,
-                        Jet& highlight) {
-    opening.AssumeWithin(-1, 1);
-    const Jet denominator = opening * 2.0 + 2.0;
-    if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
-    const Jet half = Square(cosine + hit.cosine);
-    Jet square = half * Inverse(denominator);
-    square.AssumeWithin(0, 1);
-    const double power = exponent / 2;
-    const bool smooth = power >= 2 || power == 1 || power == 0;
-    if (!smooth && !(square.lo() > kLeastDenominator)) return false;
-    highlight = Power(square, power);
-    return true;
-  }
-  static constexpr double kLeastDenominator = 0x1p-20;
 
   // A light that arrives; `faces`: at all hits, not only at some.
   struct Shining {

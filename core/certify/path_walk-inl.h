@@ -7,7 +7,7 @@
 #endif
 
 #include "core/certify/cell_paths.h"
-#include "core/certify/jet_hit-inl.h"
+#include "core/certify/hit_evaluator-inl.h"
 #include "core/certify/light_terms-inl.h"
 #include "core/certify/path_certifier.h"
 #include "core/certify/radiance_sum-inl.h"

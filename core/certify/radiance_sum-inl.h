@@ -27,11 +27,13 @@ class RadianceSum {
     }
   }
 
-  // A term of every ray: colour * f. Neither is negative.
-  void Add(const Rgb& colour, Jet f) {
+  // A term of every ray: colour * f. Neither is negative. The interpolant of f's corners may exceed
+  // f by `excess` more than the jet says.
+  void Add(const Rgb& colour, Jet f, double excess = 0) {
     // Where the curvature says less than the range, the middle of the range is better than corners.
     const double half = RoundUp(f.v.Width() / 2);
-    if (half < (f.ExcessOverQ() + f.ExcessUnderQ()) / 2 + f.slack) {
+    if (half < (f.ExcessOverQ() + f.ExcessUnderQ() + excess) / 2 + f.slack) {
+      excess = 0;
       f.k = Pack<kCorners>::All(f.Middle());
       f.ds = IntervalPack<2 * D>::All({0, 0});
       f.slack = Above(half + kOutward * f.v.Magnitude());
@@ -44,6 +46,7 @@ class RadianceSum {
       c.least = RoundDown(c.least + RoundDown(colour[i] * std::max(0.0, f.lo())));
       c.most = RoundUp(c.most + RoundUp(colour[i] * std::max(0.0, f.hi())));
       c.slack = RoundUp(c.slack + RoundUp(colour[i] * f.slack));
+      c.excess = RoundUp(c.excess + RoundUp(colour[i] * excess));
     }
   }
   void AddConstant(const Rgb& colour) { Add(colour, Jet::Constant(1)); }
@@ -85,7 +88,7 @@ class RadianceSum {
   struct Channel {
     Pack<kCorners> corners;
     IntervalPack<D> curvature;
-    double least = 0, most = 0, slack = 0;
+    double least = 0, most = 0, slack = 0, excess = 0;
   };
   // The interpolant Q of the corners is above the sum f by at most L and below it by at most U
   // (corner_jet-inl.h). Where f is curved to one side, Q is moved to the middle between its bounds,
@@ -97,7 +100,7 @@ class RadianceSum {
   static Centring CentringOf(const Channel& c) {
     const Pack<D> zero = Pack<D>::All(0);
     const double over = Above(SumOfLanes(Max(zero, -c.curvature.lo)) / 8);
-    const double under = Above(SumOfLanes(Max(zero, c.curvature.hi)) / 8);
+    const double under = Above(SumOfLanes(Max(zero, c.curvature.hi)) / 8 + c.excess);
     Centring centring;
     const double lowest = std::max(0.0, SmallestLane(c.corners));
     centring.shift = std::max((over - under) / 2, -lowest);

@@ -137,9 +137,19 @@ struct CornerJet : LooseJet<Dimension> {
     return Affine(0, by, begin, end);
   }
 
+  // f is off by up to `error` from what the jet says so far.
+  void Widen(double error) {
+    slack = Above(slack + error);
+    v = Outward(v.lo - error, v.hi + error);
+  }
   // Something else is known of f's range.
   void AssumeWithin(double least, double most) {
     v = {std::clamp(v.lo, least, most), std::clamp(v.hi, least, most)};
+  }
+  // Something else is known of its first and pure second derivatives.
+  void AssumeDerivatives(const IntervalPack<D>& first, const IntervalPack<D>& second) {
+    ds = Meet(ds, Combine(first, second));
+    Tighten();
   }
   // f is known to be concave along every axis.
   void AssumeConcave() {

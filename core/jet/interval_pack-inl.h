@@ -63,6 +63,18 @@ IntervalPack<N> operator*(const IntervalPack<N>& a, double c) {
   return c < 0 ? Outward(q, p) : Outward(p, q);
 }
 
+// A product, rounded to the nearest: not yet an enclosure.
+template <size_t N>
+IntervalPack<N> NearProduct(const IntervalPack<N>& a, const IntervalPack<N>& b) {
+  const Pack<N> p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+  return {Min(Min(p, q), Min(r, s)), Max(Max(p, q), Max(r, s))};
+}
+template <size_t N>
+IntervalPack<N> operator*(const Interval& c, const IntervalPack<N>& a) {
+  const IntervalPack<N> product = NearProduct(IntervalPack<N>::All(c), a);
+  return Outward(product.lo, product.hi);
+}
+
 template <size_t N>
 IntervalPack<N> Square(const IntervalPack<N>& a) {
   const Pack<N> zero = Pack<N>::All(0);
@@ -72,12 +84,6 @@ IntervalPack<N> Square(const IntervalPack<N>& a) {
   return {Max(zero, least - StepOf(least)), most + StepOf(most)};
 }
 
-// A product, rounded to the nearest: not yet an enclosure.
-template <size_t N>
-IntervalPack<N> NearProduct(const IntervalPack<N>& a, const IntervalPack<N>& b) {
-  const Pack<N> p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
-  return {Min(Min(p, q), Min(r, s)), Max(Max(p, q), Max(r, s))};
-}
 // Encloses the sum of two or three near products. Each of them is off by half a step of its own
 // size; every addition, and the move outwards, is by half a step of the sum.
 template <size_t N>

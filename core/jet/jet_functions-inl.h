@@ -48,6 +48,19 @@ LooseJet<D> Compose(const CornerJet<D>& a, const Function& g,
   return r;
 }
 
+// The same where g is a power, x^p: then g'' = g' (p - 1) / x, and hence
+//   g(a)'' = g'(a) (a'' + (p - 1) a'^2 / a).
+// The two terms in brackets, often of different signs, are added before they are multiplied by what
+// varies: the chain rule as it stands takes the largest of both.
+template <size_t D>
+LooseJet<D> ComposePower(const CornerJet<D>& a, const Function& g, double p,
+                         const Pack<CornerJet<D>::kCorners>& corners, double rounding) {
+  LooseJet<D> r = Compose(a, g, corners, rounding);
+  const Interval ratio = Inverse(a.v) * (p - 1);
+  r.ds = Combine(r.d(), Meet(r.s(), g.first * (a.s() + ratio * Square(a.d()))));
+  return r;
+}
+
 template <size_t D>
 LooseJet<D> Square(const CornerJet<D>& a) {
   const auto k = CornersWithin(a);
@@ -64,7 +77,7 @@ CornerJet<D> Inverse(const CornerJet<D>& a) {
   const Interval value = Inverse(a.v);
   const Interval square = Square(value);
   const Function g{value, -square, square * value * 2.0};
-  return Compose(a, g, Pack<CornerJet<D>::kCorners>::All(1) / k, 2 * kOutward);
+  return ComposePower(a, g, -1, Pack<CornerJet<D>::kCorners>::All(1) / k, 2 * kOutward);
 }
 // lo > 0.
 template <size_t D>
@@ -72,7 +85,7 @@ CornerJet<D> SquareRoot(const CornerJet<D>& a) {
   const Interval value = SquareRoot(a.v);
   const Interval inverse = Inverse(value);
   const Function g{value, inverse * 0.5, -(inverse * Square(inverse) * 0.25)};
-  return Compose(a, g, SquareRoot(CornersWithin(a)), 2 * kOutward);
+  return ComposePower(a, g, 0.5, SquareRoot(CornersWithin(a)), 2 * kOutward);
 }
 // 1 / sqrt(a); lo > 0.
 template <size_t D>
@@ -82,8 +95,10 @@ CornerJet<D> InverseSquareRoot(const CornerJet<D>& a) {
   const Interval square = Square(value);
   const Interval cube = value * square;
   const Function g{value, -(cube * 0.5), cube * square * 0.75};
-  return Compose(a, g, Corners::All(1) / SquareRoot(CornersWithin(a)), 4 * kOutward);
+  return ComposePower(a, g, -0.5, Corners::All(1) / SquareRoot(CornersWithin(a)), 4 * kOutward);
 }
+// Below, 1 / a says nothing of a power of it.
+inline constexpr double kLeastBase = 0x1p-100;
 // a^p; lo >= 0, and lo > 0 unless p >= 2 or p is 0 or 1: what the first two derivatives need.
 template <size_t D>
 CornerJet<D> Power(const CornerJet<D>& a, double p) {
@@ -94,7 +109,9 @@ CornerJet<D> Power(const CornerJet<D>& a, double p) {
   for (double& x : corners) x = std::pow(x, p);
   const Interval curvature = p == 2 ? Interval{1, 1} : Power(a.v, p - 2);
   const Function g{Power(a.v, p), Power(a.v, p - 1) * p, curvature * p * (p - 1)};
-  return Compose(a, g, Pack<CornerJet<D>::kCorners>::Load(corners), kPowerRounding);
+  const auto k = Pack<CornerJet<D>::kCorners>::Load(corners);
+  if (!(a.v.lo > kLeastBase)) return Compose(a, g, k, kPowerRounding);
+  return ComposePower(a, g, p, k, kPowerRounding);
 }
 
 }  // namespace linetree::LINETREE_JETS

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "core/certify/jet_hit-inl.h"
+#include "core/certify/hit_evaluator-inl.h"
 #include "core/trace/tracer.h"
 #include "tests/support/random_scene.h"
 
@@ -131,6 +131,12 @@ class JetHitTest : public testing::TestWithParam<ShapeKind> {
       } else {
         ExpectHolds(hit.normal, u, truth.normal, sharp, "normal");
       }
+      if (hit.curved) {
+        const WideVec way = CastVec3<Wide>(place_) - truth.point;
+        ExpectHolds(hit.CurvedFacing(place_), u, Dot(truth.normal, way), sharp, "facing");
+        ExpectHolds(hit.CurvedFacingTo(place_), u, Dot(truth.normal, CastVec3<Wide>(place_)), sharp,
+                    "facing to");
+      }
       if (testing::Test::HasFatalFailure()) return;
     }
     seen.straddling += misses;
@@ -183,6 +189,7 @@ class JetHitTest : public testing::TestWithParam<ShapeKind> {
   Scene scene_;
   JetShape shape_;
   double tolerance_ = 0;
+  const Vec3d place_ = random_.InCube(6);
   std::map<std::pair<int, bool>, Seen> seen_;  // by face, and whether from inside
 };
 
