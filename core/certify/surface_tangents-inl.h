@@ -37,25 +37,29 @@ void TightenOnSurface(const JetVector<D>& p, const JetVector<D>& q, const Quadri
   const CornerJet<D>* ps[3] = {&p.x, &p.y, &p.z};
   const CornerJet<D>* qs[3] = {&q.x, &q.y, &q.z};
   CornerJet<D>* ms[3] = {&m.x, &m.y, &m.z};
+  const auto times = [](const Interval& f, const Lanes& g) {
+    return NearProduct(Lanes::All(f), g);
+  };
+  const auto gradient_times = [&](const Lanes(&v)[3]) {
+    return SumOfNear(times(at.gradient[0], v[0]), times(at.gradient[1], v[1]),
+                     times(at.gradient[2], v[2]));
+  };
   const Interval over = -Inverse(at.slope);
-  Lanes e[3];
-  Lanes sum = Lanes::All({0, 0});
+  Lanes e[3], tangents[3], squares[3];
+  for (size_t i = 0; i < 3; ++i) e[i] = SumOfNear(ps[i]->d(), times(t.v, qs[i]->d()));
+  const Lanes first = Meet(t.d(), over * gradient_times(e));
   for (size_t i = 0; i < 3; ++i) {
-    e[i] = ps[i]->d() + t.v * qs[i]->d();
-    sum = sum + at.gradient[i] * e[i];
-  }
-  const Lanes first = Meet(t.d(), over * sum);
-  Lanes tangents[3];
-  sum = Lanes::All({0, 0});
-  for (size_t i = 0; i < 3; ++i) {
-    tangents[i] = Meet(ms[i]->d(), e[i] + qs[i]->v * first);
+    tangents[i] = Meet(ms[i]->d(), SumOfNear(e[i], times(qs[i]->v, first)));
+    squares[i] = Square(tangents[i]);
     const Lanes mixed = NearProduct(qs[i]->d(), first);
-    e[i] = ps[i]->s() + t.v * qs[i]->s() + Outward(mixed.lo, mixed.hi) * 2.0;
-    sum = sum + Square(tangents[i]) * (i == 2 ? at.z_square : 1) + at.gradient[i] * e[i];
+    e[i] = SumOfNear(ps[i]->s(), times(t.v, qs[i]->s()),
+                     Lanes{mixed.lo + mixed.lo, mixed.hi + mixed.hi});
   }
-  t.AssumeDerivatives(first, over * sum);
+  const double z = at.z_square;
+  const Lanes form = SumOfNear(squares[0], squares[1], times({z, z}, squares[2]));
+  t.AssumeDerivatives(first, over * (form + gradient_times(e)));
   for (size_t i = 0; i < 3; ++i) {
-    ms[i]->AssumeDerivatives(tangents[i], e[i] + qs[i]->v * t.s());
+    ms[i]->AssumeDerivatives(tangents[i], SumOfNear(e[i], times(qs[i]->v, t.s())));
   }
 }
 
