@@ -49,27 +49,26 @@ CornerJet<D> Bell(const JetVector<D>& w, double q) {
   return bell;
 }
 
-// (n.h)^exponent at hits of rays of unit `direction`; `cosine` is n.l. False where there is no
-// bound. With v = -direction, w = (l + v) / N - n and N = n.(l + v), w is across n, and hence
+// (n.h)^exponent at hits where `both` is l + v, the unit vectors to the light and back, and
+// `cosine` n.l. False where there is no bound. With N = n.(l + v) and w = (l + v) / N - n, which is
+// across n,
 //   (n.h)^2 = N^2 / |l + v|^2 = 1 / (1 + |w|^2):
 // near the peak w is small, and nothing that varies more is subtracted from its like. Where N may
-// be small, (n.h)^2 = N^2 / (2 + 2 l.v).
+// be small, the quotient is taken as it stands.
 template <size_t D>
-bool HighlightOf(const JetHit<D>& hit, const JetVector<D>& direction, const JetVector<D>& to_light,
-                 const CornerJet<D>& cosine, double exponent, CornerJet<D>& highlight) {
+bool HighlightOf(const JetHit<D>& hit, const JetVector<D>& both, const CornerJet<D>& cosine,
+                 double exponent, CornerJet<D>& highlight) {
   using Jet = CornerJet<D>;
   using Vector = JetVector<D>;
   const Jet elevation = cosine + hit.cosine;
   const double power = exponent / 2;
   if (elevation.lo() > kLeastElevation) {
-    const Vector toward = to_light + -direction;
-    const Vector along = toward * Inverse(elevation);
+    const Vector along = both * Inverse(elevation);
     highlight = Bell(hit.flat ? along - hit.flat_normal : Vector(along + -hit.normal), power);
     return true;
   }
-  Jet opening = Dot(direction, to_light) * -1.0;
-  opening.AssumeWithin(-1, 1);
-  const Jet denominator = opening * 2.0 + 2.0;
+  Jet denominator = LengthSquared(both);
+  denominator.AssumeWithin(0, 4);
   if (!IsPositive(denominator, kLeastDenominator / kSignMargin)) return false;
   const Jet half = Square(elevation);
   Jet square = half * Inverse(denominator);

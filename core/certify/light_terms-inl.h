@@ -149,15 +149,15 @@ class LightTerms {
     const Jet facing = Facing(hit, light);
     const bool shines = !IsBlack(material.specular);
     Jet cosine = facing, strength = Jet::Constant(1);
-    Vector to_light;
+    Vector both;  // l + v
     if (light.kind == LightKind::kDirectional) {
-      if (shines) to_light = Vector::Constant(light.to_light);
+      if (shines) both = -direction - -light.to_light;
     } else {
       const Vector segment = -(hit.point - light.position);
       const Jet square = SquaredDistance(hit, light, segment);
       if (!IsPositive(square, square.hi())) return false;
       const Jet inverse = InverseSquareRoot(square);
-      if (shines) to_light = segment * inverse;
+      if (shines) both = segment * inverse + -direction;
       cosine = facing * inverse;
       if (light.fade_distance > 0) {
         if (!FadeOver(light, square, strength)) return false;
@@ -176,7 +176,7 @@ class LightTerms {
     }
     if (!shines) return true;
     Jet highlight;
-    if (!HighlightOf(hit, direction, to_light, cosine, material.exponent, highlight)) return false;
+    if (!HighlightOf(hit, both, cosine, material.exponent, highlight)) return false;
     highlight = faded(highlight);
     sum_.Add(arriving * material.specular, faces ? highlight : BrokenOff(highlight));
     return true;
