@@ -97,9 +97,9 @@ struct Seen {
 
 class JetHitTest : public testing::TestWithParam<ShapeKind> {
  protected:
-  void SetUp() override {
+  void SetShape(const AffineMap& map) {
     AddMaterial(scene_, Matte({1, 1, 1}));
-    AddObject(scene_, RandomShape(GetParam(), random_, 1, random_.InCube(2)));
+    AddObject(scene_, RandomShape(GetParam(), random_, map));
     shape_ = MakeJetShape(scene_.objects[0]);
     tolerance_ = kShapeRounding * shape_.reach * kMaxStretch;
   }
@@ -194,6 +194,7 @@ class JetHitTest : public testing::TestWithParam<ShapeKind> {
 };
 
 TEST_P(JetHitTest, HoldsTheHitsOfItsRays) {
+  SetShape(RandomMap(random_, 1, random_.InCube(2)));
   for (int i = 0; i < 1500; ++i) {
     TryRays();
     ASSERT_FALSE(HasFatalFailure()) << "bundle " << i;
@@ -208,6 +209,23 @@ TEST_P(JetHitTest, HoldsTheHitsOfItsRays) {
     EXPECT_TRUE(seen.contained > 0 || seen.evaluated < 50);
   }
   EXPECT_FALSE(seen_.empty());
+}
+
+// Of spheres and round frustums more is known.
+TEST_P(JetHitTest, HoldsThoseOfShapesThatAreNotSkewed) {
+  const double size = random_.Uniform(0.4, 0.8);
+  const AffineMap turned =
+      Then(Scaling({size, size, size}), Rotation(random_.Direction(), random_.Uniform(0, 360)));
+  SetShape(Then(turned, Translation(random_.InCube(2))));
+  EXPECT_EQ(shape_.radius > 0, GetParam() == ShapeKind::kSphere);
+  EXPECT_EQ(shape_.slant > 0, shape_.kind == JetShape::Kind::kFrustum);
+  int contained = 0;
+  for (int i = 0; i < 500; ++i) {
+    TryRays();
+    ASSERT_FALSE(HasFatalFailure()) << "bundle " << i;
+  }
+  for (const auto& [face, seen] : seen_) contained += seen.contained;
+  EXPECT_GT(contained, 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, JetHitTest, testing::ValuesIn(kShapeKinds), [](const auto& info) {

@@ -82,8 +82,8 @@ inline Shape RandomPolyhedron(Random& random, const AffineMap& map) {
   return Good(MakePolyhedron(half_spaces, map));
 }
 
-inline Shape RandomShape(ShapeKind kind, Random& random, double size, const Vec3d& center) {
-  const AffineMap map = RandomMap(random, size, center);
+// About as large as a unit sphere, under the map.
+inline Shape RandomShape(ShapeKind kind, Random& random, const AffineMap& map) {
   const auto frustum = [&](double base_radius, double top_radius, bool open) {
     return Good(MakeFrustum({{0, 0, -0.7}, {0, 0, 0.7}, base_radius, top_radius, open}, map));
   };
@@ -114,6 +114,9 @@ inline Shape RandomShape(ShapeKind kind, Random& random, double size, const Vec3
       return RandomPolyhedron(random, map);
   }
   LT_CHECK(false);
+}
+inline Shape RandomShape(ShapeKind kind, Random& random, double size, const Vec3d& center) {
+  return RandomShape(kind, random, RandomMap(random, size, center));
 }
 
 }  // namespace linetree::test
