@@ -15,17 +15,9 @@ namespace {
 
 constexpr double kLeastNode = 0x1p-100, kMostNode = 0x1p100;
 constexpr double kLebesgue = 1.64;
-// Of the height of a light above a plane, relative to the coordinates it comes from: 6 u for the
-// cell's middle, 1 for the segment, 3 for the product, and as many once more for the tracer's own,
-// whose unit normal has 2.5; together 23 u, and 32 are allowed for. No sum shows them: lights are
-// taken from a height of kLengthMargin on, where this is 2^-18, as much as kNodeRounding, and
-// nearly all of that is allowance for sums in float.
-constexpr double kHeightRounding = 0x1p-48;
 // Cosine to the plane's normal: shading normals that lean more may lie on its other side at hits,
 // whose weights are negative by as little as hits lie beyond an edge.
 constexpr double kLeastLean = 0x1p-10;
-// Distances are trusted to this.
-constexpr double kLengthMargin = 0x1p-30;
 
 double PowerOf(double x, int n) {
   double product = 1;
@@ -80,18 +72,23 @@ std::array<float, 3> ToNode(const Rgb& sum) {
 
 }  // namespace
 
-std::vector<size_t> DiffuseSummer::Summable(const CellLights& lights) const {
-  std::vector<size_t> summable;
-  for (size_t i = 0; i < scene_.lights.size(); ++i) {
+namespace {
+
+void FindSummable(const CellLights& lights, std::vector<size_t>& summable) {
+  summable.clear();
+  for (size_t i = 0; i < lights.lights.size(); ++i) {
     if (lights.lights[i].knowledge == LightKnowledge::kOn) summable.push_back(i);
   }
-  return summable;
 }
+
+}  // namespace
 
 void DiffuseSummer::AddSums(int object, const SurfaceChart& chart, int patch,
                             const SurfaceCell& cell, CellLights& lights) const {
   if (IsBlack(scene_.MaterialOf(object).diffuse)) return;
-  std::vector<size_t> summable = Summable(lights);
+  // Room that the cells of this thread use one after the other.
+  thread_local std::vector<size_t> summable;
+  FindSummable(lights, summable);
   if (summable.size() < static_cast<size_t>(kMinSummedLights)) return;
   const size_t count = summable.size();
   const Object& receiver = scene_.objects[static_cast<size_t>(object)];
@@ -122,40 +119,74 @@ namespace {
 
 double SumOfSizes(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
-// A cell of a plane, as lights in front of it see it.
+PlaneView ViewOf(const SurfaceChart::PlanarCell& cell, const Vec3d& normal) {
+  PlaneView view;
+  view.normal = normal;
+  view.center = cell.corner + (cell.eu + cell.ev) * 0.5;
+  view.radius = std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2;
+  view.reach = SumOfSizes(view.center) + view.radius;
+  // A hit's distance from the cell's own point, cell.pad at most, goes into the height of a light
+  // and into how far away it is, which is no nearer than that height.
+  view.slip = 2 * cell.pad;
+  view.stretch =
+      (PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)) / (24 * 81);
+  return view;
+}
+
+NodePlaces NodePlacesOf(const SurfaceChart::PlanarCell& cell) {
+  NodePlaces places;
+  for (size_t k = 0; k < kPlaneNodes; ++k) {
+    const Vec3d place = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
+                        cell.ev * (static_cast<double>(k / 4) / 3);
+    places.x[k] = place.x;
+    places.y[k] = place.y;
+    places.z[k] = place.z;
+  }
+  return places;
+}
+
+// The sum over one side of a planar cell, as it grows.
 class PlaneTerms {
  public:
   // `points` is room for the lamps that do not fade.
-  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,
-             std::vector<NodeLight>& points)
-      : normal_(normal),
-        center_(cell.corner + (cell.eu + cell.ev) * 0.5),
-        radius_(std::max(Length(cell.eu + cell.ev), Length(cell.eu - cell.ev)) / 2),
-        reach_(SumOfSizes(center_) + radius_),
-        slip_(2 * cell.pad),
-        stretch_(PowerOf(Length(cell.eu), 4) + kLebesgue * PowerOf(Length(cell.ev), 4)),
-        points_(points) {
-    points_.clear();
-    for (size_t k = 0; k < kPlaneNodes; ++k) {
-      const Vec3d place = cell.corner + cell.eu * (static_cast<double>(k % 4) / 3) +
-                          cell.ev * (static_cast<double>(k / 4) / 3);
-      places_.x[k] = place.x;
-      places_.y[k] = place.y;
-      places_.z[k] = place.z;
+  PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal, NodeLights& points)
+      : view_(ViewOf(cell, normal)), places_(NodePlacesOf(cell)), points_(points) {
+    points_.Clear();
+  }
+
+  // Takes those of the lights that are good enough, and those out of the list that are not and may
+  // face the side.
+  void Take(const Scene& scene, DiffuseSummer::Lanes lanes, std::vector<size_t>& lights) {
+    for (const size_t i : lights) {
+      const Light& light = scene.lights[i];
+      if (IsPlain(light)) points_.Add(light.position, light.irradiance);
     }
+    TermSums sums;
+    if (lanes == DiffuseSummer::Lanes::kSimd) {
+      TakeLights(view_, points_, sums);
+    } else {
+      TakeLightsScalar(view_, points_, sums);
+    }
+    bounds_ = {sums.error.Sum(), sums.least.Sum(), sums.most.Sum()};
+    count_ = points_.size;
+    size_t next = 0;
+    std::erase_if(lights, [&](size_t i) {
+      const Light& light = scene.lights[i];
+      const Taken taken = IsPlain(light) ? PointTaken(next++) : AddOther(light);
+      return taken == Taken::kNo;
+    });
   }
+  size_t count() const { return count_; }
+  const SumBounds& bounds() const { return bounds_; }
 
-  enum class Taken { kYes, kNo, kBehind };
-
-  // Adds a light's term, if it is good enough, to the bounds, and keeps it for the nodes.
-  Taken Add(const Light& light, SumBounds& bounds) {
-    return light.kind == LightKind::kDirectional ? AddDirectional(light, bounds)
-                                                 : AddPoint(light, bounds);
-  }
   // The nodes of all terms that were taken.
-  std::array<Rgb, kPlaneNodes> Nodes() const {
+  std::array<Rgb, kPlaneNodes> Nodes(DiffuseSummer::Lanes lanes) const {
     NodeSums sums;
-    AddPointLights(places_, points_, sums);
+    if (lanes == DiffuseSummer::Lanes::kSimd) {
+      AddPointLights(places_, points_, sums);
+    } else {
+      AddPointLightsScalar(places_, points_, sums);
+    }
     std::array<Rgb, kPlaneNodes> nodes;
     for (size_t k = 0; k < kPlaneNodes; ++k) {
       nodes[k] = Rgb{sums.r[k], sums.g[k], sums.b[k]} + everywhere_;
@@ -169,56 +200,57 @@ class PlaneTerms {
   }
 
  private:
-  Taken AddDirectional(const Light& light, SumBounds& bounds) {
-    const double cosine = Dot(normal_, light.to_light);
+  enum class Taken { kYes, kNo, kBehind };
+
+  // What TakeLights looks at.
+  static bool IsPlain(const Light& light) {
+    return light.kind == LightKind::kPoint && !(light.fade_distance > 0);
+  }
+  Taken PointTaken(size_t i) const {
+    const size_t block = i / NodeLights::kBlock, lane = i % NodeLights::kBlock;
+    if ((points_.taken[block] >> lane & 1) != 0) return Taken::kYes;
+    return (points_.behind[block] >> lane & 1) != 0 ? Taken::kBehind : Taken::kNo;
+  }
+
+  // Adds a light's term, if it is good enough, to the bounds, and keeps it for the nodes.
+  Taken AddOther(const Light& light) {
+    const Taken taken =
+        light.kind == LightKind::kDirectional ? AddDirectional(light) : AddFading(light);
+    count_ += taken == Taken::kYes ? 1 : 0;
+    return taken;
+  }
+  Taken AddDirectional(const Light& light) {
+    const double cosine = Dot(view_.normal, light.to_light);
     if (!(cosine > 0)) return Taken::kBehind;
     const Rgb term = Scaled(light.irradiance, cosine);
     everywhere_ += term;
-    bounds.least += Scaled(term, 1 - kLengthMargin);
-    bounds.most += term;
+    bounds_.least += Scaled(term, 1 - kLengthMargin);
+    bounds_.most += term;
     return Taken::kYes;
   }
-
-  Taken AddPoint(const Light& light, SumBounds& bounds) {
-    const Vec3d away = light.position - center_;
-    const double height = Dot(away, normal_);
-    // Most lights that are behind are so by far, which needs no root.
-    if (height <= -(slip_ + kLengthMargin * (SumOfSizes(away) + radius_))) return Taken::kBehind;
-    const double distance = Length(away);
-    const double least_height = std::max(slip_, kLengthMargin * (distance + radius_));
-    if (height <= -least_height) return Taken::kBehind;
-    // Of a light in the plane itself rounding says which side it is on.
-    if (!(height > least_height)) return Taken::kNo;
-    const double nearest = std::max(height, distance - radius_) * (1 - kLengthMargin);
-    const double farthest = (distance + radius_) * (1 + kLengthMargin);
-    const double noise = (kHeightRounding * (reach_ + SumOfSizes(light.position)) + slip_) / height;
-    const bool fades = light.fade_distance > 0;
-    const FadingBound fading = BoundFading(light, nearest, farthest);
+  Taken AddFading(const Light& light) {
+    const LightReach reach = ReachOf(view_, light.position);
+    if (reach.side == LightReach::Side::kBehind) return Taken::kBehind;
+    if (reach.side == LightReach::Side::kUnknown) return Taken::kNo;
+    const FadingBound fading = BoundFading(light, reach.nearest, reach.farthest);
     // Of the height, once, and of the distance; what both do together is less than what is allowed
     // for the distance twice.
-    const double growth = fades ? 1 + fading.slope : 1;
-    const double error = stretch_ * fading.fourth / (24 * 81) + noise * growth * fading.most;
+    const double error =
+        view_.stretch * fading.fourth + reach.noise * (1 + fading.slope) * fading.most;
     if (!(error <= kMaxTermSpread * fading.least)) return Taken::kNo;
-    const Rgb strength = Scaled(light.irradiance, height);
-    bounds.error += Scaled(strength, error);
-    bounds.least += Scaled(strength, fading.least);
-    bounds.most += Scaled(strength, fading.most);
-    if (fades) {
-      fading_.push_back({&light, strength});
-    } else {
-      points_.push_back({light.position, strength});
-    }
+    const Rgb strength = Scaled(light.irradiance, reach.height);
+    bounds_.error += Scaled(strength, error);
+    bounds_.least += Scaled(strength, fading.least);
+    bounds_.most += Scaled(strength, fading.most);
+    fading_.push_back({&light, strength});
     return Taken::kYes;
   }
 
-  const Vec3d normal_, center_;
-  const double radius_, reach_;
-  // What a hit's distance from the cell's own point, cell.pad at most, does to the height of a
-  // light and to how far away it is, which is no nearer than that height.
-  const double slip_;
-  const double stretch_;
-  NodePlaces places_;
-  std::vector<NodeLight>& points_;
+  const PlaneView view_;
+  const NodePlaces places_;
+  SumBounds bounds_;
+  size_t count_ = 0;
+  NodeLights& points_;
   struct FadingLight {
     const Light* light;
     Rgb strength;
@@ -245,17 +277,11 @@ DiffuseSummer::MaybeSum DiffuseSummer::SumOnPlane(const SurfaceChart::PlanarCell
                                                   const Vec3d& normal,
                                                   std::vector<size_t>& lights) const {
   // Room that the sums of this thread use one after the other.
-  thread_local std::vector<NodeLight> points;
+  thread_local NodeLights points;
   PlaneTerms terms(cell, normal, points);
-  SumBounds bounds;
-  size_t count = 0;
-  std::erase_if(lights, [&](size_t i) {
-    const auto taken = terms.Add(scene_.lights[i], bounds);
-    count += taken == PlaneTerms::Taken::kYes ? 1 : 0;
-    return taken == PlaneTerms::Taken::kNo;
-  });
-  if (count < static_cast<size_t>(kMinSummedLights)) return nullptr;
-  return Finished(4, count, terms.Nodes().data(), bounds);
+  terms.Take(scene_, lanes_, lights);
+  if (terms.count() < static_cast<size_t>(kMinSummedLights)) return nullptr;
+  return Finished(4, terms.count(), terms.Nodes(lanes_).data(), terms.bounds());
 }
 
 DiffuseSummer::MaybeSum DiffuseSummer::SumOnCurve(const Object& receiver, double slip, int patch,

@@ -17,6 +17,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/certify/plane_nodes.h"
 #include "core/tree/light_certifier.h"
 #include "core/tree/surface_chart.h"
 
@@ -26,15 +27,12 @@ namespace linetree {
 // sum then.
 inline constexpr int kMinSummedLights = 1;
 
-// A light whose own term may be off by a larger share is left out and evaluated exactly: mostly one
-// that is near. What is left in a sum is off by no more.
-inline constexpr double kMaxTermSpread = 1.0 / 64;
-
 // Rounding of a sum's answer, relative to its largest node. Nodes are floats, at most 1.64^2 of
 // whose largest rounding reaches the sum; so does that of the weights and products when the sum is
 // evaluated in float (12 of 2^-24), where the two coordinates are off by 2^-24 of the cell, along
 // each of which the polynomial changes by at most 9 times its largest node: 33 of 2^-24, rounded up
-// to 64. In double, of which only the first part is seen, no more than a 24th of it is used.
+// to 64. In double, of which only the first part is seen, no more than a 24th of it is used. Nodes
+// of planar cells are off by kInverseRootRounding before they are rounded: a thousandth of 2^-24.
 inline constexpr double kNodeRounding = 0x1p-18;
 
 struct CurvedTask;
@@ -58,8 +56,6 @@ class DiffuseSummer {
  private:
   using MaybeSum = std::unique_ptr<const DiffuseSum>;
 
-  // The lights that can be in a sum.
-  std::vector<size_t> Summable(const CellLights& lights) const;
   // On the side that `normal` points to. Both take those lights out of `lights` that are not in the
   // sum and may face the side.
   MaybeSum SumOnPlane(const SurfaceChart::PlanarCell& cell, const Vec3d& normal,

@@ -4,6 +4,8 @@
 // compiled for one.
 #include "core/certify/plane_nodes.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/jet/simd_targets.h"
@@ -12,62 +14,102 @@
 #define HWY_TARGET_INCLUDE "core/certify/plane_nodes.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h.
+#include "core/certify/plane_nodes-inl.h"
 #include "hwy/highway.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace linetree::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-// A vector of nodes, under all lights.
-void AddPointLights(const NodePlaces& places, std::span<const NodeLight> lights, NodeSums& sums) {
-  const hn::CappedTag<double, kPlaneNodes> d;
-  const auto one = hn::Set(d, 1.0);
-  for (size_t k = 0; k < kPlaneNodes; k += hn::Lanes(d)) {
-    const auto x = hn::LoadU(d, &places.x[k]);
-    const auto y = hn::LoadU(d, &places.y[k]);
-    const auto z = hn::LoadU(d, &places.z[k]);
-    auto r = hn::LoadU(d, &sums.r[k]);
-    auto g = hn::LoadU(d, &sums.g[k]);
-    auto b = hn::LoadU(d, &sums.b[k]);
-    for (const NodeLight& light : lights) {
-      const auto dx = hn::Sub(hn::Set(d, light.position.x), x);
-      const auto dy = hn::Sub(hn::Set(d, light.position.y), y);
-      const auto dz = hn::Sub(hn::Set(d, light.position.z), z);
-      const auto square = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-      const auto inverse = hn::Div(one, hn::Sqrt(square));
-      r = hn::Add(r, hn::Mul(hn::Set(d, light.strength.r), inverse));
-      g = hn::Add(g, hn::Mul(hn::Set(d, light.strength.g), inverse));
-      b = hn::Add(b, hn::Mul(hn::Set(d, light.strength.b), inverse));
-    }
-    hn::StoreU(r, d, &sums.r[k]);
-    hn::StoreU(g, d, &sums.g[k]);
-    hn::StoreU(b, d, &sums.b[k]);
-  }
-}
-
-}  // namespace linetree::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace linetree {
 
+HWY_EXPORT(TakeLights);
 HWY_EXPORT(AddPointLights);
 
-void AddPointLights(const NodePlaces& places, std::span<const NodeLight> lights, NodeSums& sums) {
+void TakeLights(const PlaneView& plane, NodeLights& lights, TermSums& sums) {
+  HWY_DYNAMIC_DISPATCH(TakeLights)(plane, lights, sums);
+}
+void AddPointLights(const NodePlaces& places, const NodeLights& lights, NodeSums& sums) {
   HWY_DYNAMIC_DISPATCH(AddPointLights)(places, lights, sums);
 }
 
-void AddPointLightsScalar(const NodePlaces& places, std::span<const NodeLight> lights,
-                          NodeSums& sums) {
-  for (const NodeLight& light : lights) {
+void NodeLights::Grow() {
+  const size_t room = std::max<size_t>(4 * kBlock, 2 * x.size());
+  // What lies beyond the last light is looked at with the others, and never taken.
+  for (auto* column : {&x, &y, &z, &r, &g, &b}) column->resize(room);
+  for (auto* bits : {&taken, &behind}) bits->resize(room / kBlock);
+}
+
+Rgb TermSums::Lanes::Sum() const {
+  Rgb sum;
+  for (size_t i = 0; i < NodeLights::kBlock; ++i) sum += Rgb{r[i], g[i], b[i]};
+  return sum;
+}
+
+LightReach ReachOf(const PlaneView& plane, const Vec3d& light) {
+  const Vec3d away = light - plane.center;
+  LightReach reach;
+  reach.height = Dot(away, plane.normal);
+  const double distance = Length(away);
+  const double least_height = std::max(plane.slip, kLengthMargin * (distance + plane.radius));
+  // Of a light in the plane itself rounding says which side it is on.
+  if (reach.height <= -least_height) reach.side = LightReach::Side::kBehind;
+  if (!(reach.height > least_height)) return reach;
+  reach.nearest = std::max(reach.height, distance - plane.radius) * (1 - kLengthMargin);
+  reach.farthest = (distance + plane.radius) * (1 + kLengthMargin);
+  if (!(reach.nearest >= kLeastReach && reach.farthest <= kMostReach)) return reach;
+  const double sizes = std::abs(light.x) + std::abs(light.y) + std::abs(light.z);
+  reach.noise = (kHeightRounding * (plane.reach + sizes) + plane.slip) / reach.height;
+  reach.side = LightReach::Side::kFront;
+  return reach;
+}
+
+void TakeLightsScalar(const PlaneView& plane, NodeLights& lights, TermSums& sums) {
+  size_t count = 0;
+  for (size_t i = 0; i < lights.size; ++i) {
+    const size_t lane = i % NodeLights::kBlock;
+    uint8_t &taken = lights.taken[i / NodeLights::kBlock],
+            &behind = lights.behind[i / NodeLights::kBlock];
+    if (lane == 0) taken = behind = 0;
+    const LightReach reach = ReachOf(plane, {lights.x[i], lights.y[i], lights.z[i]});
+    if (reach.side == LightReach::Side::kBehind) behind |= static_cast<uint8_t>(1u << lane);
+    if (reach.side != LightReach::Side::kFront) continue;
+    const double most = 1 / reach.nearest, least = 1 / reach.farthest, square = most * most;
+    const double error = plane.stretch * (24 * square * square * most) + reach.noise * most;
+    if (!(error <= kMaxTermSpread * least)) continue;
+    taken |= static_cast<uint8_t>(1u << lane);
+    const auto add = [&](double strength, double& errors, double& leasts, double& mosts) {
+      errors += strength * error;
+      leasts += strength * least;
+      mosts += strength * most;
+      return strength;
+    };
+    lights.x[count] = lights.x[i];
+    lights.y[count] = lights.y[i];
+    lights.z[count] = lights.z[i];
+    lights.r[count] =
+        add(lights.r[i] * reach.height, sums.error.r[lane], sums.least.r[lane], sums.most.r[lane]);
+    lights.g[count] =
+        add(lights.g[i] * reach.height, sums.error.g[lane], sums.least.g[lane], sums.most.g[lane]);
+    lights.b[count++] =
+        add(lights.b[i] * reach.height, sums.error.b[lane], sums.least.b[lane], sums.most.b[lane]);
+  }
+  lights.size = count;
+}
+
+double InverseRoot(double x) {
+  double y = std::bit_cast<double>(kInverseRootBits - (std::bit_cast<uint64_t>(x) >> 1));
+  const double half = x * 0.5;
+  for (int i = 0; i < kInverseRootSteps; ++i) y = y * (1.5 - half * y * y);
+  return y;
+}
+
+void AddPointLightsScalar(const NodePlaces& places, const NodeLights& lights, NodeSums& sums) {
+  for (size_t i = 0; i < lights.size; ++i) {
     for (size_t k = 0; k < kPlaneNodes; ++k) {
-      const Vec3d segment = light.position - Vec3d{places.x[k], places.y[k], places.z[k]};
-      const double inverse =
-          1 / std::sqrt(segment.x * segment.x + segment.y * segment.y + segment.z * segment.z);
-      sums.r[k] += light.strength.r * inverse;
-      sums.g[k] += light.strength.g * inverse;
-      sums.b[k] += light.strength.b * inverse;
+      const double dx = lights.x[i] - places.x[k], dy = lights.y[i] - places.y[k],
+                   dz = lights.z[i] - places.z[k];
+      const double inverse = InverseRoot(dx * dx + dy * dy + dz * dz);
+      sums.r[k] += lights.r[i] * inverse;
+      sums.g[k] += lights.g[i] * inverse;
+      sums.b[k] += lights.b[i] * inverse;
     }
   }
 }
