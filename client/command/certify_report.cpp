@@ -26,6 +26,28 @@ nlohmann::json DoubtsJson(const std::array<uint64_t, kDoubtCount>& doubts) {
   return json;
 }
 
+// "0.12 (near 0.10, curved 0.02)", a pixel.
+std::string UnsummedText(const LightStudyRow& row) {
+  uint64_t sum = 0;
+  std::string reasons;
+  for (size_t i = 0; i < row.unsummed.size(); ++i) {
+    if (row.unsummed[i] == 0) continue;
+    sum += row.unsummed[i];
+    absl::StrAppend(&reasons, reasons.empty() ? "" : ", ", std::string(kUnsummedNames[i]), " ",
+                    Ratio(Share(row.unsummed[i], row.covered)));
+  }
+  const std::string all = Ratio(Share(sum, row.covered));
+  return reasons.empty() ? all : absl::StrCat(all, " (", reasons, ")");
+}
+
+nlohmann::json UnsummedJson(const LightStudyRow& row) {
+  nlohmann::json json = nlohmann::json::object();
+  for (size_t i = 0; i < row.unsummed.size(); ++i) {
+    json[std::string(kUnsummedNames[i])] = row.unsummed[i];
+  }
+  return json;
+}
+
 }  // namespace
 
 uint64_t CertifyReport::Violations() const {
@@ -114,6 +136,7 @@ std::string LightTable(const CertifyReport& report) {
                {"undecided a pixel", Align::kRight},
                {"candidates each", Align::kRight},
                {"answered", Align::kRight},
+               {"on, in no sum", Align::kRight},
                {"cells", Align::kRight},
                {"bytes a cell", Align::kRight},
                {"us a cell", Align::kRight}});
@@ -122,8 +145,8 @@ std::string LightTable(const CertifyReport& report) {
                   Percent(Share(row.nearly_decided, row.covered)),
                   Ratio(Share(row.decided, row.covered)), Ratio(Share(row.undecided, row.covered)),
                   Ratio(Share(row.candidates, row.undecided)),
-                  Percent(Share(row.answered, row.candidates)), Grouped(row.cells),
-                  absl::StrFormat("%.0f", Share(row.bytes, row.cells)),
+                  Percent(Share(row.answered, row.candidates)), UnsummedText(row),
+                  Grouped(row.cells), absl::StrFormat("%.0f", Share(row.bytes, row.cells)),
                   absl::StrFormat("%.1f", row.cell_us)});
   }
   return table.ToString();
@@ -191,6 +214,7 @@ nlohmann::json CertifyJson(const CertifyReport& report) {
                               {"undecided", row.undecided},
                               {"candidates", row.candidates},
                               {"answered_by_functions", row.answered},
+                              {"on_in_no_sum", UnsummedJson(row)},
                               {"cells", row.cells},
                               {"bytes", row.bytes},
                               {"cell_us", row.cell_us}});

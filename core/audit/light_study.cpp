@@ -32,6 +32,15 @@ uint64_t CountAnswered(const KnownLights& known, const LightList& list) {
   return answered;
 }
 
+Unsummed ReasonOf(const Scene& scene, const Hit& hit) {
+  const Shape& shape = scene.objects[static_cast<size_t>(hit.object)].shape;
+  if (IsBlack(scene.MaterialOf(hit.object).diffuse)) return Unsummed::kBlack;
+  if (std::holds_alternative<TriangleShape>(shape)) return Unsummed::kVertexNormals;
+  const bool is_lateral = std::holds_alternative<FrustumShape>(shape) && hit.face == 0;
+  if (is_lateral || std::holds_alternative<SphereShape>(shape)) return Unsummed::kCurved;
+  return Unsummed::kNear;
+}
+
 // Adds the lights that a hit's surface faces; returns how many the trees leave to be tested.
 int AddLights(const Scene& scene, const Hit& hit, const KnownLights& known, LightStudyRow& row) {
   int undecided = 0;
@@ -40,6 +49,8 @@ int AddLights(const Scene& scene, const Hit& hit, const KnownLights& known, Ligh
     const LightList list = known.lists == nullptr ? LightList{} : known.lists[i];
     if (list.knowledge == LightKnowledge::kOn || list.knowledge == LightKnowledge::kOff) {
       ++row.decided;
+      const bool is_unsummed = list.knowledge == LightKnowledge::kOn && !list.summed;
+      if (is_unsummed) ++row.unsummed[static_cast<size_t>(ReasonOf(scene, hit))];
       continue;
     }
     ++undecided;

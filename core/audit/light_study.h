@@ -1,14 +1,24 @@
 // How many lights the surface trees leave undecided, and what their cells cost.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/render/worker_pool.h"
 #include "core/scene/scene.h"
 
 namespace linetree {
+
+// Why a light that is on is in no diffuse sum, by what it falls on: a surface without diffuse
+// light, a triangle with vertex normals (they lie on both sides, or the bound is too wide), a
+// curved surface (the bound is too wide, or there is an apex), a plane (the lamp is near, or in
+// it).
+enum class Unsummed { kBlack, kVertexNormals, kCurved, kNear };
+inline constexpr std::array<std::string_view, 4> kUnsummedNames = {"black", "vertex normals",
+                                                                   "curved", "near"};
 
 struct LightStudyRow {
   size_t lights = 0;
@@ -20,6 +30,8 @@ struct LightStudyRow {
   uint64_t undecided = 0;
   uint64_t candidates = 0;  // of the undecided ones
   uint64_t answered = 0;    // of these candidates: by their function
+  // Lights that are on and in no sum, by reason (kUnsummedNames).
+  std::array<uint64_t, kUnsummedNames.size()> unsummed{};
   uint64_t cells = 0;
   uint64_t bytes = 0;
   double cell_us = 0;  // microseconds a cell, one thread

@@ -48,14 +48,14 @@ double CellLights::Patience() const {
 
 namespace {
 
+// Of a light that is not on.
 LightTask::Kind KindOf(const LightList& list, const Scene& scene) {
   switch (list.knowledge) {
     case LightKnowledge::kOff:
     case LightKnowledge::kFacingAway:
     case LightKnowledge::kUnknown:
-      break;
     case LightKnowledge::kOn:
-      return list.summed ? LightTask::Kind::kSummed : LightTask::Kind::kOn;
+      break;
     case LightKnowledge::kListed:
       // What several filters leave depends on the order in which they are met.
       if (std::all_of(list.candidates.begin(), list.candidates.end(),
@@ -74,25 +74,34 @@ bool MayReach(const LightList& list) {
 }  // namespace
 
 void CellLights::MakeTasks(const Scene& scene) {
-  size_t count = 0, summed = 0;
-  for (const LightList& list : lights) {
-    count += MayReach(list) ? 1 : 0;
-    summed += list.knowledge == LightKnowledge::kOn && list.summed ? 1 : 0;
-  }
-  tasks.assign(count, LightTask{});
-  rest_of_tasks = static_cast<uint32_t>(count - summed);
-  size_t next_rest = 0, next_summed = rest_of_tasks;
+  // Room that the cells of this thread use one after the other. Nobody can predict which lights are
+  // summed, so both kinds are written and one of them is counted.
+  thread_local std::vector<LightTask> rest, summed;
+  rest.resize(lights.size());
+  summed.resize(lights.size());
+  size_t rest_count = 0, summed_count = 0;
   for (size_t i = 0; i < lights.size(); ++i) {
     const LightList& list = lights[i];
-    if (!MayReach(list)) continue;
-    const LightTask::Kind kind = KindOf(list, scene);
-    LightTask& task = tasks[kind == LightTask::Kind::kSummed ? next_summed++ : next_rest++];
-    task.kind = kind;
-    task.light = static_cast<uint16_t>(i);
-    if (kind != LightTask::Kind::kListed) continue;
-    task.first = static_cast<uint32_t>(list.candidates.data() - objects.data());
-    task.count = static_cast<uint32_t>(list.candidates.size());
+    const auto light = static_cast<uint16_t>(i);
+    if (list.knowledge == LightKnowledge::kOn) {
+      const auto kind = list.summed ? LightTask::Kind::kSummed : LightTask::Kind::kOn;
+      summed[summed_count] = rest[rest_count] = {.kind = kind, .light = light};
+      summed_count += list.summed ? 1 : 0;
+      rest_count += list.summed ? 0 : 1;
+    } else if (MayReach(list)) {
+      LightTask& task = rest[rest_count++];
+      task = {.kind = KindOf(list, scene), .light = light};
+      if (task.kind != LightTask::Kind::kListed) continue;
+      task.first = static_cast<uint32_t>(list.candidates.data() - objects.data());
+      task.count = static_cast<uint32_t>(list.candidates.size());
+    }
   }
+  rest_of_tasks = static_cast<uint32_t>(rest_count);
+  tasks.clear();
+  tasks.reserve(rest_count + summed_count);
+  tasks.insert(tasks.end(), rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(rest_count));
+  tasks.insert(tasks.end(), summed.begin(),
+               summed.begin() + static_cast<std::ptrdiff_t>(summed_count));
 }
 
 }  // namespace linetree

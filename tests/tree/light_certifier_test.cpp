@@ -159,6 +159,35 @@ TEST_F(LightCertifierTest, DividedFunctionsSayWhatNewOnesSay) {
   EXPECT_GT(known, points * 99 / 100);
 }
 
+// At depth 4 functions are built anew, but for those of which a quarter of the parent's says
+// already that the object is nowhere or everywhere in the way: what is built anew would say the
+// same, so parents are made that say something else.
+TEST_F(LightCertifierTest, WhatAQuarterSettlesIsNotBuiltAnew) {
+  Add(test::Box({-0.6, -0.6, 2}, {0.6, 0.6, 3}));
+  const Tracer tracer(scene_);
+  const LightCertifier certifier(tracer);
+  const SurfaceChart chart(scene_.objects[0]);
+  const SurfacePoint at = chart.Locate(0, {0.85, 0.1, 0});  // at the shadow's edge
+  const auto certify = [&](int depth, const CellLights* parent) {
+    return certifier.Certify(0, chart, at.patch, CellAt(at, depth), parent);
+  };
+  CellLights parent = certify(3, nullptr);
+  ASSERT_EQ(parent.functions.size(), 1u);
+  ASSERT_EQ(parent.functions[0].pieces, 1);
+  ASSERT_EQ(parent.functions[0].squares, 0);
+  const CellLights afresh = certify(4, nullptr);
+  const CellLights open = certify(4, &parent);
+  ASSERT_EQ(open.lights[0].knowledge, LightKnowledge::kListed);
+  EXPECT_EQ(open.coefficients, afresh.coefficients) << "what is left open is built anew";
+  for (const auto& [value, knowledge] :
+       {std::pair(2.0f, LightKnowledge::kOn), std::pair(-2.0f, LightKnowledge::kOff)}) {
+    for (size_t i = 0; i < parent.coefficients.size(); ++i) {
+      parent.coefficients[i] = i % kLinearSize == 0 ? value : 0;
+    }
+    EXPECT_EQ(certify(4, &parent).lights[0].knowledge, knowledge);
+  }
+}
+
 TEST_F(LightCertifierTest, TouchingObjectsStayCandidates) {
   Add(test::Sphere({0.25, 0.25, 0.5}, 0.5));  // stands on the floor
   EXPECT_EQ(Knowledge(0.9, 0.25, 3), LightKnowledge::kListed);
