@@ -138,6 +138,8 @@ TEST(BenchCommand, CertifyPrintsItsThreeTables) {
   ASSERT_EQ(json["lights"].size(), 8u);  // with shadow functions and without
   EXPECT_EQ(json["lights"][7]["lights"], 128);
   EXPECT_GT(json["lights"][0]["at_most_one_undecided"], 0);
+  EXPECT_GT(json["lights"][0]["on_in_no_sum"]["near"], 0);
+  EXPECT_EQ(json["lights"][0]["on_in_no_sum"]["black"], 0);
   ASSERT_EQ(json["frames"].size(), 4u);
   EXPECT_EQ(json["frames"][0]["unequal"], 0);
   EXPECT_EQ(json["frames"][0]["pixels"], 3 * 64 * 64);
