@@ -10,6 +10,7 @@
 #include "core/io/scene_edit.h"
 #include "core/io/trace_file.h"
 #include "core/io/wire.h"
+#include "core/io/wire_explain.h"
 #include "core/io/wire_frame.h"
 #include "core/policy/policies.h"
 #include "core/store/data_folder.h"
@@ -299,6 +300,12 @@ absl::StatusOr<v1::TuneCacheReply> Backend::TuneCache(const v1::TuneCacheRequest
   reply.set_policy(scene->host->policy());
   reply.set_memory_budget_bytes(scene->memory_bytes);
   return reply;
+}
+
+absl::StatusOr<v1::ExplainReply> Backend::Explain(const v1::ExplainRequest& request) const {
+  auto scene = scenes_.Find(request.scene(), "scene");
+  if (!scene.ok()) return scene.status();
+  return ExplainToWire(request, options_.defaults.max_relative_error, *scene->host);
 }
 
 absl::StatusOr<v1::TraceRaysReply> Backend::TraceRays(const v1::TraceRaysRequest& request,

@@ -64,6 +64,8 @@ class Backend {
   v1::GetStatsReply GetSums() const;
   v1::GetLimitsReply GetLimits() const;
   absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) const;
+  // The first one for a scene may have packets to prepare: on loads().
+  absl::StatusOr<v1::ExplainReply> Explain(const v1::ExplainRequest& request) const;
   // Leaves the timer where the answers have become a message.
   absl::StatusOr<v1::TraceRaysReply> TraceRays(const v1::TraceRaysRequest& request,
                                                const CancelToken& cancel, FrameTimer& timer);

@@ -127,4 +127,9 @@ grpc::ServerUnaryReactor* Gate::TuneCache(Context* context, const Bytes* request
   });
 }
 
+grpc::ServerUnaryReactor* Gate::Explain(Context* context, const Bytes* request, Bytes* reply) {
+  return Pass<grpc::ServerUnaryReactor>(context, Role::kViewer, "Explain",
+                                        [&] { return service_.Explain(context, request, reply); });
+}
+
 }  // namespace linetree

@@ -44,6 +44,7 @@ class Gate final : public RawService {
                                       Bytes* reply) override;
   grpc::ServerUnaryReactor* TuneCache(Context* context, const Bytes* request,
                                       Bytes* reply) override;
+  grpc::ServerUnaryReactor* Explain(Context* context, const Bytes* request, Bytes* reply) override;
 
  private:
   // Lets the call through, or ends it.

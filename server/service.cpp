@@ -208,4 +208,13 @@ grpc::ServerUnaryReactor* Service::TuneCache(Context* context, const Bytes* requ
   return OnLoader(info, context, reply, work);
 }
 
+grpc::ServerUnaryReactor* Service::Explain(Context* context, const Bytes* request, Bytes* reply) {
+  const auto work = [this, request](const CancelToken&) {
+    return Handle<v1::ExplainRequest>(
+        *request, backend_.limits().max_request_bytes,
+        [this](const v1::ExplainRequest& r) { return backend_.Explain(r); });
+  };
+  return OnLoader(ReadCallInfo(context), context, reply, work);
+}
+
 }  // namespace linetree

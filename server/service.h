@@ -20,7 +20,8 @@ using RawService = v1::RadianceCache::WithRawCallbackMethod_LoadScene<
                                 v1::RadianceCache::WithRawCallbackMethod_GetLimits<
                                     v1::RadianceCache::WithRawCallbackMethod_UpdateScene<
                                         v1::RadianceCache::WithRawCallbackMethod_TuneCache<
-                                            v1::RadianceCache::Service>>>>>>>>>>>;
+                                            v1::RadianceCache::WithRawCallbackMethod_Explain<
+                                                v1::RadianceCache::Service>>>>>>>>>>>>;
 
 class Service final : public RawService {
  public:
@@ -50,6 +51,7 @@ class Service final : public RawService {
                                       Bytes* reply) override;
   grpc::ServerUnaryReactor* TuneCache(Context* context, const Bytes* request,
                                       Bytes* reply) override;
+  grpc::ServerUnaryReactor* Explain(Context* context, const Bytes* request, Bytes* reply) override;
 
  private:
   // What changes scenes: one call after another.

@@ -57,7 +57,8 @@ void PrintMore(const BenchSpeedFlags& flags, const std::vector<SpeedRow>& rows) 
     const FrameSpeed& flight = row.paths.back().flight;
     std::cout << "\n"
               << row.setting.name << "\n"
-              << ExplanationText(*row.setting.scene, flight.explanation);
+              << ExplanationText(
+                     ExplanationToWire(*row.setting.scene, flight.explanation, kUsualExplained));
   }
 }
 

@@ -4,22 +4,21 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/command/local_client.h"
 #include "client/command/table.h"
-#include "core/math/check.h"
 
 namespace linetree {
 namespace {
 
-std::string FeatureTable(const std::vector<FeatureNote>& features) {
+std::string FeatureTable(const v1::ExplainReply& explanation) {
   Table table({{"in the scene"}, {"count", Align::kRight}, {"frames by packets"}});
-  for (const FeatureNote& note : features) {
-    table.AddRow({note.feature, note.count ? Grouped(*note.count) : "", note.what_frames_do});
+  for (const auto& note : explanation.features()) {
+    table.AddRow(
+        {note.feature(), note.has_count() ? Grouped(note.count()) : "", note.what_frames_do()});
   }
   return table.ToString();
 }
 
-std::string ObjectTable(const Scene& scene, const std::vector<ObjectPlan>& objects) {
+std::string ObjectTable(const v1::ExplainReply& explanation) {
   Table table({{"object"},
                {"trees"},
                {"why"},
@@ -28,37 +27,50 @@ std::string ObjectTable(const Scene& scene, const std::vector<ObjectPlan>& objec
                {"without", Align::kRight},
                {"cells", Align::kRight},
                {"bytes", Align::kRight}});
-  for (const ObjectPlan& object : objects) {
+  for (const auto& object : explanation.objects()) {
     const auto work = [&](double value) {
-      return object.points > 0 ? absl::StrFormat("%.1f", value) : "-";
+      return object.points() > 0 ? absl::StrFormat("%.1f", value) : "-";
     };
-    table.AddRow({absl::StrCat(object.object, " ", scene.objects[object.object].name),
-                  object.asked ? "asked" : "skipped", std::string(WordsFor(object.reason)),
-                  Grouped(object.points), work(object.tree_work), work(object.classical_work),
-                  Grouped(object.trees.cells), Grouped(object.trees.bytes)});
+    table.AddRow({absl::StrCat(object.object(), " ", object.name()),
+                  object.asked() ? "asked" : "skipped", std::string(WordsFor(object.reason())),
+                  Grouped(object.points()), work(object.tree_work()), work(object.classical_work()),
+                  Grouped(object.cells()), Grouped(object.bytes())});
   }
   return table.ToString();
 }
 
+// How many objects have which reason.
+std::string Sums(const v1::ExplainReply& explanation) {
+  std::string text;
+  for (const auto& count : explanation.reasons()) {
+    absl::StrAppend(&text, "  ", Grouped(count.objects()), ": ",
+                    std::string(WordsFor(count.reason())), "\n");
+  }
+  return text;
+}
+
 }  // namespace
 
-std::string ExplanationText(const Scene& scene, const SceneHost::Explanation& explanation) {
-  size_t skipped = 0;
-  for (const ObjectPlan& object : explanation.objects) skipped += object.asked ? 0 : 1;
-  return absl::StrCat(
-      FeatureTable(explanation.features), "\nSurface trees after ", explanation.decisions,
-      " decision(s): ", skipped, " of ", explanation.objects.size(),
-      " objects skipped. Work is that of a point that was looked at of late, with the trees and "
-      "without.\n",
-      ObjectTable(scene, explanation.objects));
+std::string ExplanationText(const v1::ExplainReply& explanation) {
+  const uint64_t objects = explanation.objects_asked() + explanation.objects_skipped();
+  const auto listed = static_cast<uint64_t>(explanation.objects_size());
+  std::string text = absl::StrCat(
+      FeatureTable(explanation), "\nSurface trees after ", explanation.decisions(),
+      " decision(s): ", Grouped(explanation.objects_skipped()), " of ", Grouped(objects),
+      " objects skipped.\n", Sums(explanation),
+      "Work is that of a point that was looked at of late, with the trees and without.\n",
+      ObjectTable(explanation));
+  if (listed < objects) {
+    absl::StrAppend(&text, Grouped(objects - listed), " objects with no more points than these\n");
+  }
+  return text;
 }
 
 void AddExplainFlag(CLI::App& app, bool& explain) {
   app.add_flag("--explain", explain,
-               "Also print what was left out, for the scene and every object, and why; of frames "
-               "by packets (--lanes simd)")
-      ->group("Output")
-      ->needs("--local");
+               "Also print what was left out, for the scene and its objects, and why, of all "
+               "frames of the scene so far; of frames by packets (--lanes simd)")
+      ->group("Output");
 }
 
 absl::Status ValidateExplain(bool explain, const RenderOptions& options) {
@@ -73,12 +85,12 @@ absl::Status ValidateExplain(bool explain, const RenderOptions& options) {
 
 absl::Status PrintExplanation(Client& client, const std::string& scene,
                               const RenderOptions& options) {
-  auto* local = dynamic_cast<LocalClient*>(&client);
-  LT_CHECK(local != nullptr);
-  const auto host = local->Find(scene);
-  if (!host.ok()) return host.status();
-  std::cout << "\n"
-            << ExplanationText((*host)->scene(), (*host)->Explain(options.max_relative_error));
+  v1::ExplainRequest request;
+  request.set_scene(scene);
+  request.set_max_relative_error(options.max_relative_error);
+  const auto explanation = client.Explain(request);
+  if (!explanation.ok()) return explanation.status();
+  std::cout << "\n" << ExplanationText(*explanation);
   return absl::OkStatus();
 }
 

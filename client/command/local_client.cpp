@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/io/load_scene.h"
 #include "core/io/wire.h"
+#include "core/io/wire_explain.h"
 
 namespace linetree {
 
@@ -190,6 +191,12 @@ absl::StatusOr<v1::TuneCacheReply> LocalClient::TuneCache(const v1::TuneCacheReq
   reply.set_policy((*host)->policy());
   reply.set_memory_budget_bytes(memory_bytes_);
   return reply;
+}
+
+absl::StatusOr<v1::ExplainReply> LocalClient::Explain(const v1::ExplainRequest& request) {
+  const absl::StatusOr<HostPointer> host = Find(request.scene());
+  if (!host.ok()) return host.status();
+  return ExplainToWire(request, RenderOptions().max_relative_error, **host);
 }
 
 }  // namespace linetree

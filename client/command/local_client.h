@@ -54,6 +54,7 @@ class LocalClient : public Client {
   // UNIMPLEMENTED: limits are a server's.
   absl::StatusOr<v1::GetLimitsReply> GetLimits() override;
   absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) override;
+  absl::StatusOr<v1::ExplainReply> Explain(const v1::ExplainRequest& request) override;
 
  private:
   const uint64_t memory_bytes_;

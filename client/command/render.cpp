@@ -102,6 +102,7 @@ void AddRender(CLI::App& parent, Commands& commands) {
       "  linetree render --scene room --epsilon 0.05 --frames 2 --stats room.json\n"
       "  linetree render --scene room --layer verdict -o why.png\n"
       "  linetree render --local --scene scenes/room.textproto --lanes simd --frames 3 --explain\n"
+      "  linetree render --scene room --lanes simd --explain\n"
       "  linetree render --local --scene scenes/room.textproto --lanes simd --samples 16 -o "
       "fine.png\n"
       "  linetree render --scene room --eye 0,1,6 --look-at 0,1,0 --fov 60 -o view.png\n\n",

@@ -75,6 +75,10 @@ class GrpcClient final : public Client {
     return Call<v1::TuneCacheReply>(&Stub::TuneCache, request);
   }
 
+  absl::StatusOr<v1::ExplainReply> Explain(const v1::ExplainRequest& request) override {
+    return Call<v1::ExplainReply>(&Stub::Explain, request);
+  }
+
   absl::StatusOr<Frame> RenderFrame(const std::string& scene, const FrameRequest& request,
                                     const std::string& camera_name, const FrameFormat& format,
                                     const Progress& progress) override;

@@ -87,6 +87,7 @@ class Client {
   virtual absl::StatusOr<v1::GetLimitsReply> GetLimits() = 0;
   // Without a policy in it, asks which one a scene has.
   virtual absl::StatusOr<v1::TuneCacheReply> TuneCache(const v1::TuneCacheRequest& request) = 0;
+  virtual absl::StatusOr<v1::ExplainReply> Explain(const v1::ExplainRequest& request) = 0;
 };
 
 }  // namespace linetree

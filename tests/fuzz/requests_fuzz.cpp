@@ -101,6 +101,7 @@ void Handle(v1::UpdateSceneRequest request) {
 void Handle(const v1::TuneCacheRequest& request) {
   Check(TheBackend().TuneCache(request).status());
 }
+void Handle(const v1::ExplainRequest& request) { Check(TheBackend().Explain(request).status()); }
 void Handle(const v1::GetLimitsRequest&) { TheBackend().GetLimits(); }
 
 // Reads a request in one of the two forms and hands it over. What stood before the first error is a
@@ -135,16 +136,24 @@ void FeedTexts(bool, const std::string& input) {
 }
 
 using Feeder = void (*)(bool is_text, const std::string& input);
-constexpr Feeder kFeeders[] = {
-    Feed<v1::LoadSceneRequest>,   Feed<v1::ListScenesRequest>,  Feed<v1::DescribeSceneRequest>,
-    Feed<v1::UnloadSceneRequest>, Feed<v1::RenderFrameRequest>, Feed<v1::FlyRequest>,
-    Feed<v1::TraceRaysRequest>,   Feed<v1::GetStatsRequest>,    Feed<v1::GetLimitsRequest>,
-    Feed<v1::UpdateSceneRequest>, Feed<v1::TuneCacheRequest>,   FeedTexts};
+constexpr Feeder kFeeders[] = {Feed<v1::LoadSceneRequest>,
+                               Feed<v1::ListScenesRequest>,
+                               Feed<v1::DescribeSceneRequest>,
+                               Feed<v1::UnloadSceneRequest>,
+                               Feed<v1::RenderFrameRequest>,
+                               Feed<v1::FlyRequest>,
+                               Feed<v1::TraceRaysRequest>,
+                               Feed<v1::GetStatsRequest>,
+                               Feed<v1::GetLimitsRequest>,
+                               Feed<v1::UpdateSceneRequest>,
+                               Feed<v1::TuneCacheRequest>,
+                               Feed<v1::ExplainRequest>,
+                               FeedTexts};
 // The requests of the first ones, in their order.
 constexpr const char* kRequests[] = {
     "LoadSceneRequest",   "ListScenesRequest",  "DescribeSceneRequest", "UnloadSceneRequest",
     "RenderFrameRequest", "FlyRequest",         "TraceRaysRequest",     "GetStatsRequest",
-    "GetLimitsRequest",   "UpdateSceneRequest", "TuneCacheRequest"};
+    "GetLimitsRequest",   "UpdateSceneRequest", "TuneCacheRequest",     "ExplainRequest"};
 static_assert(std::size(kRequests) + 1 == std::size(kFeeders));
 
 // That no method of the service has been forgotten.

@@ -138,7 +138,6 @@ TEST(RenderCommand, ExplainsWhatWasLeftOut) {
   const Finished scalar = RunLinetree(Render("gap.textproto", {"--explain"}));
   EXPECT_EQ(scalar.exit_status, 1);
   EXPECT_THAT(scalar.err, HasSubstr("--explain: expected --lanes simd"));
-  EXPECT_EQ(RunLinetree({"render", "--scene", "room", "--explain"}).exit_status, 2);
 }
 
 TEST(RenderCommand, TheViewCanBeGiven) {

@@ -77,6 +77,22 @@ TEST_F(ServerCommand, ScenesAreEdited) {
   EXPECT_THAT(run.err, HasSubstr("edits.textproto:1:"));
 }
 
+TEST_F(ServerCommand, WhatWasLeftOutIsExplained) {
+  const std::vector<std::string> render = {
+      "render",  "--scene",  SourceFile("scenes/many_lights.textproto"),
+      "--lanes", "simd",     "--width",
+      "128",     "--height", "128",
+      "-q",      "--explain"};
+  const Finished remote = Run(render);
+  ASSERT_EQ(remote.exit_status, 0) << remote.err;
+  std::vector<std::string> here = render;
+  here.push_back("--local");
+  const Finished local = RunLinetree(here);
+  ASSERT_EQ(local.exit_status, 0) << local.err;
+  EXPECT_EQ(remote.out, local.out);
+  EXPECT_THAT(remote.out, HasSubstr("decision(s): "));
+}
+
 TEST_F(ServerCommand, FramesComeInTheFormThatIsAskedFor) {
   const auto render = [&](const std::string& codec, const std::string& file) {
     return Run({"render", "--scene", "gap", "--mode", "classical", "--width", "40", "--height",
