@@ -129,6 +129,30 @@ class Service(unittest.TestCase):
                              end.stats.listed_shadow_rays - end.stats.listed_branch_rays)
         self.assertGreater(end.stats.listed_shadow_rays, 0)
 
+    def test_what_frames_leave_out_is_explained(self):
+        def explain(**fields):
+            request = service_pb2.ExplainRequest(scene="ball", **fields)
+            return self.server.stub.Explain(request, timeout=PATIENCE_S)
+
+        options = service_pb2.RenderOptions(lanes=service_pb2.LANES_SIMD)
+        for _ in range(2):
+            list(self.server.stub.RenderFrame(small_frame(options=options), timeout=PATIENCE_S))
+        reply = explain()
+        objects = reply.objects_asked + reply.objects_skipped
+        self.assertEqual(sum(count.objects for count in reply.reasons), objects)
+        self.assertEqual(len(reply.objects), objects)
+        self.assertGreaterEqual(reply.decisions, 1)
+        points = [plan.points for plan in reply.objects]
+        self.assertEqual(points, sorted(points, reverse=True))
+        notes = {note.feature: note for note in reply.features}
+        self.assertEqual(notes["all objects"].count, objects)
+        exact = {note.feature: note for note in explain(max_relative_error=0).features}
+        self.assertNotEqual(exact["diffuse sums"], notes["diffuse sums"])
+        self.assertEqual(len(explain(max_objects=1).objects), 1)
+        for fields in ({"max_relative_error": math.nan}, {"max_objects": 0}):
+            with refused(self, grpc.StatusCode.INVALID_ARGUMENT, next(iter(fields)) + ": "):
+                explain(**fields)
+
     def test_scenes_from_the_servers_folder(self):
         folder = served.PROJECT / "scenes"
         def load(server, **fields):
