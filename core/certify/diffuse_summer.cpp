@@ -75,10 +75,14 @@ std::array<float, 3> ToNode(const Rgb& sum) {
 namespace {
 
 void FindSummable(const CellLights& lights, std::vector<size_t>& summable) {
-  summable.clear();
+  // Nobody can predict which lights are on, so all are written, and those are counted.
+  summable.resize(lights.lights.size());
+  size_t count = 0;
   for (size_t i = 0; i < lights.lights.size(); ++i) {
-    if (lights.lights[i].knowledge == LightKnowledge::kOn) summable.push_back(i);
+    summable[count] = i;
+    count += lights.lights[i].knowledge == LightKnowledge::kOn ? 1 : 0;
   }
+  summable.resize(count);
 }
 
 }  // namespace
@@ -150,17 +154,13 @@ class PlaneTerms {
  public:
   // `points` is room for the lamps that do not fade.
   PlaneTerms(const SurfaceChart::PlanarCell& cell, const Vec3d& normal, NodeLights& points)
-      : view_(ViewOf(cell, normal)), places_(NodePlacesOf(cell)), points_(points) {
-    points_.Clear();
-  }
+      : view_(ViewOf(cell, normal)), places_(NodePlacesOf(cell)), points_(points) {}
 
   // Takes those of the lights that are good enough, and those out of the list that are not and may
   // face the side.
   void Take(const Scene& scene, DiffuseSummer::Lanes lanes, std::vector<size_t>& lights) {
-    for (const size_t i : lights) {
-      const Light& light = scene.lights[i];
-      if (IsPlain(light)) points_.Add(light.position, light.irradiance);
-    }
+    points_.Assign(scene.lights, lights);
+    const size_t plain = points_.size;
     TermSums sums;
     if (lanes == DiffuseSummer::Lanes::kSimd) {
       TakeLights(view_, points_, sums);
@@ -169,10 +169,11 @@ class PlaneTerms {
     }
     bounds_ = {sums.error.Sum(), sums.least.Sum(), sums.most.Sum()};
     count_ = points_.size;
+    if (plain == lights.size() && points_.AreSettled(plain)) return;
     size_t next = 0;
     std::erase_if(lights, [&](size_t i) {
       const Light& light = scene.lights[i];
-      const Taken taken = IsPlain(light) ? PointTaken(next++) : AddOther(light);
+      const Taken taken = NodeLights::IsPlain(light) ? PointTaken(next++) : AddOther(light);
       return taken == Taken::kNo;
     });
   }
@@ -202,10 +203,6 @@ class PlaneTerms {
  private:
   enum class Taken { kYes, kNo, kBehind };
 
-  // What TakeLights looks at.
-  static bool IsPlain(const Light& light) {
-    return light.kind == LightKind::kPoint && !(light.fade_distance > 0);
-  }
   Taken PointTaken(size_t i) const {
     const size_t block = i / NodeLights::kBlock, lane = i % NodeLights::kBlock;
     if ((points_.taken[block] >> lane & 1) != 0) return Taken::kYes;

@@ -56,13 +56,18 @@ inline FoundLights FindLights(const PlaneView& plane, const LightVector x, const
   return found;
 }
 
-// One channel of those that are taken: their strengths go to `to`, their terms to the lanes.
-inline void TakeChannel(const FoundLights& found, const double* irradiance, double* to,
-                        double* errors, double* leasts, double* mosts) {
+// One channel of those that are taken: their strengths go to `to`, their terms to the lanes. Where
+// all are, nothing moves within the vector.
+inline void TakeChannel(const FoundLights& found, bool is_whole, const double* irradiance,
+                        double* to, double* errors, double* leasts, double* mosts) {
   const LightTag d;
   const auto strength = hn::Mul(hn::LoadU(d, irradiance), found.height);
   const auto kept = hn::IfThenElseZero(found.taken, strength);
-  hn::CompressStore(strength, found.taken, d, to);
+  if (is_whole) {
+    hn::StoreU(strength, d, to);
+  } else {
+    hn::CompressStore(strength, found.taken, d, to);
+  }
   const auto add = [&](double* lanes, const LightVector share) {
     // Not a product of what is not taken, which may be infinite.
     const auto term = hn::IfThenElseZero(found.taken, hn::Mul(kept, share));
@@ -93,15 +98,18 @@ inline void TakeLights(const PlaneView& plane, NodeLights& lights, TermSums& sum
     lights.taken[block] |= static_cast<uint8_t>(taken << lane);
     lights.behind[block] |= static_cast<uint8_t>(behind << lane);
     if (taken == 0) continue;
-    hn::CompressStore(x, found.taken, d, &lights.x[count]);
-    hn::CompressStore(y, found.taken, d, &lights.y[count]);
-    hn::CompressStore(z, found.taken, d, &lights.z[count]);
-    TakeChannel(found, &lights.r[at], &lights.r[count], &sums.error.r[lane], &sums.least.r[lane],
-                &sums.most.r[lane]);
-    TakeChannel(found, &lights.g[at], &lights.g[count], &sums.error.g[lane], &sums.least.g[lane],
-                &sums.most.g[lane]);
-    TakeChannel(found, &lights.b[at], &lights.b[count], &sums.error.b[lane], &sums.least.b[lane],
-                &sums.most.b[lane]);
+    const bool is_whole = hn::AllTrue(d, found.taken);
+    if (!is_whole || count != at) {
+      hn::CompressStore(x, found.taken, d, &lights.x[count]);
+      hn::CompressStore(y, found.taken, d, &lights.y[count]);
+      hn::CompressStore(z, found.taken, d, &lights.z[count]);
+    }
+    TakeChannel(found, is_whole, &lights.r[at], &lights.r[count], &sums.error.r[lane],
+                &sums.least.r[lane], &sums.most.r[lane]);
+    TakeChannel(found, is_whole, &lights.g[at], &lights.g[count], &sums.error.g[lane],
+                &sums.least.g[lane], &sums.most.g[lane]);
+    TakeChannel(found, is_whole, &lights.b[at], &lights.b[count], &sums.error.b[lane],
+                &sums.least.b[lane], &sums.most.b[lane]);
     count += hn::CountTrue(d, found.taken);
   }
   lights.size = count;

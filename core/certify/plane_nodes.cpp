@@ -30,11 +30,21 @@ void AddPointLights(const NodePlaces& places, const NodeLights& lights, NodeSums
   HWY_DYNAMIC_DISPATCH(AddPointLights)(places, lights, sums);
 }
 
-void NodeLights::Grow() {
-  const size_t room = std::max<size_t>(4 * kBlock, 2 * x.size());
+void NodeLights::Grow(size_t count) {
+  const size_t blocks = (count + kBlock - 1) / kBlock;
+  const size_t room = std::max<size_t>(4, 2 * blocks) * kBlock;
   // What lies beyond the last light is looked at with the others, and never taken.
   for (auto* column : {&x, &y, &z, &r, &g, &b}) column->resize(room);
   for (auto* bits : {&taken, &behind}) bits->resize(room / kBlock);
+}
+
+bool NodeLights::AreSettled(size_t count) const {
+  for (size_t block = 0; block * kBlock < count; ++block) {
+    const size_t lights = std::min(kBlock, count - block * kBlock);
+    const unsigned all = (1u << lights) - 1;
+    if (((taken[block] | behind[block]) & all) != all) return false;
+  }
+  return true;
 }
 
 Rgb TermSums::Lanes::Sum() const {

@@ -8,6 +8,7 @@
 
 #include "core/math/rgb.h"
 #include "core/math/vec3.h"
+#include "core/scene/light.h"
 
 namespace linetree {
 
@@ -64,24 +65,43 @@ class NodeLights {
   // So many are looked at side by side: there is always room for whole blocks.
   static constexpr size_t kBlock = 8;
 
-  void Clear() { size = 0; }
   void Add(const Vec3d& position, const Rgb& light) {
-    if (size == x.size()) Grow();
-    x[size] = position.x;
-    y[size] = position.y;
-    z[size] = position.z;
-    r[size] = light.r;
-    g[size] = light.g;
-    b[size++] = light.b;
+    if (size == x.size()) Grow(size + 1);
+    Set(size++, position, light);
+  }
+  // Those of the lights that are points and do not fade, in the place of all that are here.
+  void Assign(const std::vector<Light>& lights, const std::vector<size_t>& which) {
+    if (x.size() < which.size()) Grow(which.size());
+    size_t count = 0;
+    for (const size_t i : which) {
+      const Light& light = lights[i];
+      // Most are: the others are written, too, and not counted.
+      Set(count, light.position, light.irradiance);
+      count += IsPlain(light) ? 1 : 0;
+    }
+    size = count;
+  }
+  static bool IsPlain(const Light& light) {
+    return light.kind == LightKind::kPoint && !(light.fade_distance > 0);
   }
 
   size_t size = 0;
   std::vector<double> x, y, z, r, g, b;
   // By block, a bit for each light: what TakeLights has found out.
   std::vector<uint8_t> taken, behind;
+  // Whether each of the first `count` lights, of which TakeLights was told, is one or the other.
+  bool AreSettled(size_t count) const;
 
  private:
-  void Grow();
+  void Grow(size_t count);
+  void Set(size_t i, const Vec3d& position, const Rgb& light) {
+    x[i] = position.x;
+    y[i] = position.y;
+    z[i] = position.z;
+    r[i] = light.r;
+    g[i] = light.g;
+    b[i] = light.b;
+  }
 };
 
 // Sums over lights of what is known of their terms, channel by channel. Lights go to the lanes in

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/tree/face_planes.h"
 #include "core/tree/light_certifier.h"
 #include "core/tree/separation.h"
+#include "core/tree/shadow_quarters.h"
 #include "core/tree/surface_chart.h"
 
 namespace linetree {
@@ -24,7 +26,12 @@ class LightBundle {
   LightBundle(int self_object, const PatchHull& patch, const Box3& world)
       : self(self_object), hull(patch), world_(world) {
     std::copy(patch.points.begin(), patch.points.end(), points.begin());
-    for (const Vec3d& p : patch.points) from_.Add(p);
+    Vec3d sum;
+    for (const Vec3d& p : patch.points) {
+      from_.Add(p);
+      sum = sum + p;
+    }
+    middle = sum * (1.0 / static_cast<double>(patch.points.size()));
   }
 
   void Aim(int light_index, const Light& light_source) {
@@ -50,6 +57,7 @@ class LightBundle {
   const int self;
   int light = 0;
   const PatchHull& hull;
+  Vec3d middle;  // of the hull
   const Light* source = nullptr;
   std::array<Vec3d, 9> points;  // the hull and, for a point light, the light
 
@@ -121,12 +129,19 @@ class HullViews {
     return is_apart;
   }
 
+  // CertainlyApart of the object and a bundle of which the hull is a part, as for many lights,
+  // which are often on the same side of the object.
+  bool IsBundleApart(int object, const Shape& shape, std::span<const Vec3d> points, double margin) {
+    return CertainlyApart(points, shape, margin, ViewOf(object).normal);
+  }
+
  private:
   static constexpr size_t kFaces = 6;   // of a box
   static constexpr size_t kViews = 32;  // a power of two
   struct View {
     uint32_t known_faces = 0;
     double apart_by = -1, within = Box3::kInf;
+    Vec3d normal;  // has separated a bundle from it; or 0
     std::array<Heights, kFaces> heights;
   };
 
@@ -139,6 +154,7 @@ class HullViews {
       view.known_faces = 0;
       view.apart_by = -1;
       view.within = Box3::kInf;
+      view.normal = {};
     }
     return view;
   }
@@ -159,7 +175,10 @@ struct LightFindings {
   // Whether functions that say anything are built anew, rather than divided.
   bool builds_anew = false;
   HullViews views{};
-  // Of the cell, as in CellLights.
+  ShadowQuarters quarters{};  // of the parent's functions, if it has some
+  // Of the cell, as in CellLights; functions without pieces where there are none. Fields are set
+  // where they are to stay: what has just been written byte by byte is slow to be copied as a
+  // whole.
   std::vector<Contact> contacts{};
   std::vector<int32_t> objects{};
   std::vector<ShadowFunction> functions{};
@@ -168,18 +187,14 @@ struct LightFindings {
     size_t light, begin;  // where its candidates begin
   };
   std::vector<Listed> listed{};
-  // Of one light:
-  std::vector<int32_t> kept{};
-  std::vector<std::pair<int32_t, ShadowFunction>> own_functions{};  // of objects that have one
-  int32_t occluder = kNoObject;                                     // hides it from the whole piece
+  // Of one light: its candidates are the objects from `first` on.
+  size_t first = 0, first_coefficient = 0;
+  int32_t occluder = kNoObject;  // hides it from the whole piece
+  bool may_hide_all = false;     // false: no candidate can hide it from the whole piece
+  // Of those that a search finds, in its order.
+  std::vector<std::pair<int32_t, ShadowFunction>> found_functions{};
 
-  void BeginCell(const PatchHull& hull, const SurfaceChart::PlanarCell* planar,
-                 const CellLights* larger) {
-    is_cell = true;
-    plane = planar;
-    parent = larger;
-    child = -1;
-    builds_anew = false;
+  void BeginHull(const PatchHull& hull) {
     views.Begin(hull);
     contacts.clear();
     objects.clear();
@@ -187,23 +202,40 @@ struct LightFindings {
     coefficients.clear();
     listed.clear();
   }
-  void BeginLight() {
-    kept.clear();
-    own_functions.clear();
-    occluder = kNoObject;
+  void BeginCell(const PatchHull& hull, const SurfaceChart::PlanarCell* planar,
+                 const CellLights* larger) {
+    BeginHull(hull);
+    is_cell = true;
+    plane = planar;
+    parent = larger;
+    child = -1;
+    builds_anew = false;
   }
-  // Null when the object has none.
-  const ShadowFunction* FunctionOf(int32_t object) const {
-    const auto it = std::find_if(own_functions.begin(), own_functions.end(),
+  void BeginLight() {
+    first = objects.size();
+    first_coefficient = coefficients.size();
+    occluder = kNoObject;
+    may_hide_all = false;
+    found_functions.clear();
+  }
+  // Forgets the light's candidates.
+  void DropLight() {
+    objects.resize(first);
+    functions.resize(first);
+    coefficients.resize(first_coefficient);
+  }
+  std::span<const int32_t> Candidates() const { return std::span(objects).subspan(first); }
+  void AddFound(int32_t object) {
+    const auto it = std::find_if(found_functions.begin(), found_functions.end(),
                                  [&](const auto& entry) { return entry.first == object; });
-    return it == own_functions.end() ? nullptr : &it->second;
+    objects.push_back(object);
+    functions.push_back(it->second);
   }
   // Whether what is known of a shadow settles the object; whether it is kept is then in `keep`.
-  bool Take(int32_t object, const CellShadow& shadow, bool& keep) {
-    if (shadow.everywhere == Shadowing::kBlocks) occluder = object;
-    if (shadow.function.pieces > 0) own_functions.emplace_back(object, shadow.function);
-    keep = shadow.everywhere != Shadowing::kMisses;
-    return !keep || occluder != kNoObject || shadow.function.pieces > 0;
+  bool Take(int32_t object, Shadowing everywhere, const ShadowFunction& function, bool& keep) {
+    if (everywhere == Shadowing::kBlocks) occluder = object;
+    keep = everywhere != Shadowing::kMisses;
+    return !keep || occluder != kNoObject || function.pieces > 0;
   }
 };
 

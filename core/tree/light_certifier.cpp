@@ -4,6 +4,7 @@
 
 #include "core/tree/light_bundle.h"
 #include "core/tree/separation.h"
+#include "core/tree/shadow_builder.h"
 #include "core/tree/shadow_forms.h"
 
 namespace linetree {
@@ -99,9 +100,10 @@ double LightCertifier::ClearanceTo(LightBundle& bundle, int object) const {
 }
 
 // An object has a function only where it is opaque: how often rays cross it is not asked then.
-CellShadow LightCertifier::ShadowOf(LightBundle& bundle, int object,
-                                    LightFindings& findings) const {
-  if (findings.plane == nullptr || !IsBlack(scene_.MaterialOf(object).transmit)) return {};
+Shadowing LightCertifier::ShadowOf(LightBundle& bundle, int object, LightFindings& findings,
+                                   ShadowFunction& function) const {
+  constexpr auto kNothing = Shadowing::kUnknown;
+  if (findings.plane == nullptr || !IsBlack(scene_.MaterialOf(object).transmit)) return kNothing;
   const Shape& shape = scene_.objects[static_cast<size_t>(object)].shape;
   const FacePlanes& planes = planes_[static_cast<size_t>(object)];
   const double clearance = ClearanceTo(bundle, object) * (kFunctionClearance / kClearance);
@@ -110,44 +112,57 @@ CellShadow LightCertifier::ShadowOf(LightBundle& bundle, int object,
     for (size_t i = 0; i < planes.faces.size() && !is_outside; ++i) {
       is_outside = findings.views.HeightsAbove(object, planes, i).low > clearance;
     }
-    if (!is_outside && !findings.views.IsApart(object, shape, clearance)) return {};
+    if (!is_outside && !findings.views.IsApart(object, shape, clearance)) return kNothing;
   }
   return ShadowBuilder(*findings.plane, *bundle.source)
-      .Build(shape, planes, clearance, findings.coefficients);
+      .Build(shape, planes, clearance, findings.coefficients, function);
 }
 
-bool LightCertifier::MayBlock(LightBundle& bundle, int object, LightFindings& findings) const {
+bool LightCertifier::MayBlock(LightBundle& bundle, int object, LightFindings& findings,
+                              ShadowFunction& function) const {
   // Rays that leave its outside cannot meet it; for the others the tracer looks at it itself.
   if (object == bundle.self) return false;
   if (findings.occluder != kNoObject || LiesBehind(bundle, object, findings)) return false;
+  const Shadowing everywhere = ShadowOf(bundle, object, findings, function);
   bool keep = false;
-  if (findings.Take(object, ShadowOf(bundle, object, findings), keep)) return keep;
+  if (findings.Take(object, everywhere, function, keep)) {
+    findings.may_hide_all = findings.may_hide_all || keep;
+    return keep;
+  }
+  findings.may_hide_all = true;
+  // One ray of the bundle that meets it says quickly that nothing separates them.
+  if (tracer_.ObjectBlocks(object, bundle.middle, bundle.light, {bundle.self, 0, Side::kOutside})) {
+    return true;
+  }
   const Shape& shape = scene_.objects[static_cast<size_t>(object)].shape;
   const double clearance = bundle.Clearance() + search_.Surplus(object);
-  if (bundle.IsPoint()) return !CertainlyApart(bundle.points, shape, clearance);
+  if (bundle.IsPoint()) {
+    return !findings.views.IsBundleApart(object, shape, bundle.points, clearance);
+  }
   return !CertainlyApart(bundle.hull.points, bundle.source->to_light, shape, clearance);
 }
 
 // What a part of the parent's cell keeps of one candidate: its function where it has one.
-bool LightCertifier::KeepsMeeting(LightBundle& bundle, size_t index,
-                                  LightFindings& findings) const {
+bool LightCertifier::KeepsMeeting(LightBundle& bundle, size_t index, LightFindings& findings,
+                                  ShadowFunction& function) const {
   const CellLights& parent = *findings.parent;
   const int32_t object = parent.objects[index];
   if (findings.occluder != kNoObject) return false;
   if (findings.child >= 0 && parent.functions[index].pieces > 0) {
     const size_t first_coefficient = findings.coefficients.size();
-    CellShadow shadow;
-    ShadowForms forms(findings.coefficients);
-    forms.AddQuarter(parent.functions[index], parent.coefficients.data(), findings.child);
+    const ShadowQuarters::Says says = findings.quarters.At(index, findings.coefficients, function);
+    // What is settled is so for sharper functions, too.
+    const bool is_settled = says.everywhere != Shadowing::kUnknown;
     bool keep = false;
-    if (forms.Finish(shadow.everywhere, shadow.function)) {
-      // What is settled is so for sharper functions, too.
-      const bool is_settled = shadow.function.pieces == 0;
-      if ((is_settled || !findings.builds_anew) && findings.Take(object, shadow, keep)) return keep;
-      findings.coefficients.resize(first_coefficient);
+    if ((is_settled || !findings.builds_anew) &&
+        findings.Take(object, says.everywhere, function, keep)) {
+      findings.may_hide_all = findings.may_hide_all || says.may_block_all;
+      return keep;
     }
+    findings.coefficients.resize(first_coefficient);
+    function = {};
   }
-  return MayBlock(bundle, object, findings);
+  return MayBlock(bundle, object, findings, function);
 }
 
 // Ascending; one more than kMaxCandidates at most, which says that the list is too long.
@@ -155,14 +170,26 @@ void LightCertifier::FindCandidates(LightBundle& bundle, const LightList& inheri
                                     LightFindings& findings) const {
   findings.BeginLight();
   if (inherited.knowledge != LightKnowledge::kListed) {
-    findings.kept = search_.InShaft(bundle.From(), bundle.To(), bundle.Clearance(),
-                                    [&](int object) { return MayBlock(bundle, object, findings); });
+    const auto found =
+        search_.InShaft(bundle.From(), bundle.To(), bundle.Clearance(), [&](int object) {
+          ShadowFunction& function =
+              findings.found_functions.emplace_back(object, ShadowFunction{}).second;
+          const bool keep = MayBlock(bundle, object, findings, function);
+          if (!keep) findings.found_functions.pop_back();
+          return keep;
+        });
+    for (const int32_t object : found) findings.AddFound(object);
     return;
   }
   const auto first =
       static_cast<size_t>(inherited.candidates.data() - findings.parent->objects.data());
   for (size_t i = 0; i < inherited.candidates.size(); ++i) {
-    if (KeepsMeeting(bundle, first + i, findings)) findings.kept.push_back(inherited.candidates[i]);
+    ShadowFunction& function = findings.functions.emplace_back();
+    if (KeepsMeeting(bundle, first + i, findings, function)) {
+      findings.objects.push_back(inherited.candidates[i]);
+    } else {
+      findings.functions.pop_back();
+    }
   }
 }
 
@@ -200,19 +227,17 @@ bool LightCertifier::IsCrossedByAll(const LightBundle& bundle, int object) const
 
 LightKnowledge LightCertifier::Decide(const LightBundle& bundle, LightFindings& findings) const {
   if (findings.occluder != kNoObject) return LightKnowledge::kOff;
-  const auto& kept = findings.kept;
-  if (kept.empty()) return LightKnowledge::kOn;
-  const auto hides = [&](int32_t candidate) {
-    const ShadowFunction* function = findings.FunctionOf(candidate);
+  const auto candidates = findings.Candidates();
+  if (candidates.empty()) return LightKnowledge::kOn;
+  for (size_t i = 0; findings.may_hide_all && i < candidates.size(); ++i) {
+    const ShadowFunction& function = findings.functions[findings.first + i];
     const bool may_hide =
-        function == nullptr || MayHideAll(*function, findings.coefficients.data());
-    return may_hide && HidesAll(bundle, candidate);
-  };
-  if (const auto it = std::find_if(kept.begin(), kept.end(), hides); it != kept.end()) {
-    findings.occluder = *it;
+        function.pieces == 0 || MayHideAll(function, findings.coefficients.data());
+    if (!may_hide || !HidesAll(bundle, candidates[i])) continue;
+    findings.occluder = candidates[i];
     return LightKnowledge::kOff;
   }
-  return kept.size() <= kMaxCandidates ? LightKnowledge::kListed : LightKnowledge::kUnknown;
+  return candidates.size() <= kMaxCandidates ? LightKnowledge::kListed : LightKnowledge::kUnknown;
 }
 
 LightArrival LightCertifier::ArrivalOf(int object, const PatchHull& hull, int light) const {
@@ -220,11 +245,11 @@ LightArrival LightCertifier::ArrivalOf(int object, const PatchHull& hull, int li
   bundle.Aim(light, scene_.lights[static_cast<size_t>(light)]);
   // Room that the lights of this thread use one after the other.
   thread_local LightFindings findings;
-  findings.views.Begin(hull);
+  findings.BeginHull(hull);
   FindCandidates(bundle, LightList(), findings);
   LightArrival arrival{Decide(bundle, findings)};
   if (arrival.knowledge != LightKnowledge::kListed) return arrival;
-  for (const int32_t candidate : findings.kept) {
+  for (const int32_t candidate : findings.Candidates()) {
     const int crossings = CrossingsOfAll(bundle, candidate);
     if (crossings == 0) return arrival;
     const Rgb& transmit = scene_.MaterialOf(candidate).transmit;
@@ -253,7 +278,9 @@ void AddContacts(const PatchHull& hull, const CellLights& parent, std::vector<Co
 void Finish(const LightFindings& findings, CellLights& cell) {
   cell.contacts.assign(findings.contacts.begin(), findings.contacts.end());
   cell.objects.assign(findings.objects.begin(), findings.objects.end());
-  cell.functions.assign(findings.functions.begin(), findings.functions.end());
+  if (findings.plane != nullptr) {
+    cell.functions.assign(findings.functions.begin(), findings.functions.end());
+  }
   cell.coefficients.assign(findings.coefficients.begin(), findings.coefficients.end());
   cell.shadows = {cell.objects.data(), cell.functions.data(), cell.coefficients.data()};
   size_t end = cell.objects.size();
@@ -267,25 +294,17 @@ void Finish(const LightFindings& findings, CellLights& cell) {
 
 }  // namespace
 
-LightList LightCertifier::CertifyLight(LightBundle& bundle, const LightList& inherited,
-                                       LightFindings& findings) const {
-  const size_t first_coefficient = findings.coefficients.size();
-  FindCandidates(bundle, inherited, findings);
-  LightList list;
+void LightCertifier::CertifyLight(LightBundle& bundle, LightList& list,
+                                  LightFindings& findings) const {
+  FindCandidates(bundle, list, findings);
   list.knowledge = Decide(bundle, findings);
   list.occluder = findings.occluder;
-  if (list.knowledge != LightKnowledge::kListed) {
-    findings.coefficients.resize(first_coefficient);
-    return list;
+  list.candidates = {};
+  if (list.knowledge == LightKnowledge::kListed) {
+    findings.listed.push_back({static_cast<size_t>(bundle.light), findings.first});
+  } else {
+    findings.DropLight();
   }
-  findings.listed.push_back({static_cast<size_t>(bundle.light), findings.objects.size()});
-  findings.objects.insert(findings.objects.end(), findings.kept.begin(), findings.kept.end());
-  if (findings.plane == nullptr) return list;
-  for (const int32_t object : findings.kept) {
-    const ShadowFunction* function = findings.FunctionOf(object);
-    findings.functions.push_back(function != nullptr ? *function : ShadowFunction{});
-  }
-  return list;
 }
 
 CellLights LightCertifier::Certify(int object, const SurfaceChart& chart, int patch,
@@ -303,7 +322,10 @@ CellLights LightCertifier::Certify(int object, const SurfaceChart& chart, int pa
   } else {
     cell.lights = parent->lights;
     AddContacts(hull, *parent, findings.contacts);
-    if (parent->HasFunctions()) findings.child = where.ChildAt(where.depth - 1);
+    if (parent->HasFunctions()) {
+      findings.child = where.ChildAt(where.depth - 1);
+      findings.quarters.Begin(parent->functions, parent->coefficients, findings.child);
+    }
     // Now and then, which makes them as sharp as the cell is small.
     findings.builds_anew = where.depth % kQuarterings == 0;
   }
@@ -315,11 +337,13 @@ CellLights LightCertifier::Certify(int object, const SurfaceChart& chart, int pa
     if (list.IsDecided()) continue;
     const Light& light = scene_.lights[i];
     if (has_back && chart.FacesAway(patch, hull, light)) {
-      list = {.knowledge = LightKnowledge::kFacingAway};
+      list.knowledge = LightKnowledge::kFacingAway;
+      list.occluder = kNoObject;
+      list.candidates = {};
       continue;
     }
     bundle.Aim(static_cast<int>(i), light);
-    list = CertifyLight(bundle, list, findings);
+    CertifyLight(bundle, list, findings);
   }
   Finish(findings, cell);
   return cell;

@@ -29,7 +29,6 @@
 #include "core/tree/candidate_search.h"
 #include "core/tree/diffuse_sum.h"
 #include "core/tree/face_planes.h"
-#include "core/tree/shadow_builder.h"
 #include "core/tree/surface_chart.h"
 
 namespace linetree {
@@ -152,20 +151,25 @@ class LightCertifier {
   LightArrival ArrivalOf(int object, const PatchHull& hull, int light) const;
 
  private:
-  // One light of the cell; what is found out is added to `findings`.
-  LightList CertifyLight(LightBundle& bundle, const LightList& inherited,
-                         LightFindings& findings) const;
+  // One light of the cell, of which `list` says what is inherited, and then what is known. What is
+  // found out is added to `findings`.
+  void CertifyLight(LightBundle& bundle, LightList& list, LightFindings& findings) const;
   // What may block, as FindCandidates left it, decides.
   LightKnowledge Decide(const LightBundle& bundle, LightFindings& findings) const;
   void FindCandidates(LightBundle& bundle, const LightList& inherited,
                       LightFindings& findings) const;
-  bool KeepsMeeting(LightBundle& bundle, size_t index, LightFindings& findings) const;
-  bool MayBlock(LightBundle& bundle, int object, LightFindings& findings) const;
+  // Both set the function of what is kept, which has no pieces before, where there is one.
+  bool KeepsMeeting(LightBundle& bundle, size_t index, LightFindings& findings,
+                    ShadowFunction& function) const;
+  bool MayBlock(LightBundle& bundle, int object, LightFindings& findings,
+                ShadowFunction& function) const;
   // Whether the object lies behind a plane that the light and the hull are in front of, but for
   // contacts.
   bool LiesBehind(LightBundle& bundle, int object, LightFindings& findings) const;
-  // What the object's shadow function says, which is built if there is one.
-  CellShadow ShadowOf(LightBundle& bundle, int object, LightFindings& findings) const;
+  // What the object's shadow function says, which is built if there is one, as ShadowBuilder has
+  // it.
+  Shadowing ShadowOf(LightBundle& bundle, int object, LightFindings& findings,
+                     ShadowFunction& function) const;
   // World length.
   double ClearanceTo(LightBundle& bundle, int object) const;
   // Whether the shadow rays of all points of the hull cross the object.

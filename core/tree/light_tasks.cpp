@@ -67,6 +67,13 @@ LightTask::Kind KindOf(const LightList& list, const Scene& scene) {
   return LightTask::Kind::kUnknown;
 }
 
+// Field by field: a task that has just been put together is slow to be copied as a whole.
+void Set(LightTask& task, LightTask::Kind kind, uint16_t light) {
+  task.kind = kind;
+  task.light = light;
+  task.first = task.count = 0;
+}
+
 bool MayReach(const LightList& list) {
   return list.knowledge != LightKnowledge::kOff && list.knowledge != LightKnowledge::kFacingAway;
 }
@@ -85,12 +92,13 @@ void CellLights::MakeTasks(const Scene& scene) {
     const auto light = static_cast<uint16_t>(i);
     if (list.knowledge == LightKnowledge::kOn) {
       const auto kind = list.summed ? LightTask::Kind::kSummed : LightTask::Kind::kOn;
-      summed[summed_count] = rest[rest_count] = {.kind = kind, .light = light};
+      Set(summed[summed_count], kind, light);
+      Set(rest[rest_count], kind, light);
       summed_count += list.summed ? 1 : 0;
       rest_count += list.summed ? 0 : 1;
     } else if (MayReach(list)) {
       LightTask& task = rest[rest_count++];
-      task = {.kind = KindOf(list, scene), .light = light};
+      Set(task, KindOf(list, scene), light);
       if (task.kind != LightTask::Kind::kListed) continue;
       task.first = static_cast<uint32_t>(list.candidates.data() - objects.data());
       task.count = static_cast<uint32_t>(list.candidates.size());

@@ -194,8 +194,9 @@ bool Holds(const Simplex& s, const Vec3d& w) {
 }
 
 // Gilbert, Johnson and Keerthi: v runs towards the point of {s - p} nearest to 0; the plane across
-// v through the point w that lies lowest along v bounds the set, so every step is a proposal.
-bool Search(const Bundle& bundle, const Shape& shape, double margin) {
+// v through the point w that lies lowest along v bounds the set, so every step is a proposal. The
+// normal that separates is left in `normal`.
+bool Search(const Bundle& bundle, const Shape& shape, double margin, Vec3d& normal) {
   Vec3d v = bundle.FromMiddle(MiddleOf(shape, bundle.Origin()));
   // Middles that coincide say nothing; almost always the sets overlap.
   if (!(LengthSquared(v) > 0)) v = {1, 0, 0};
@@ -204,8 +205,9 @@ bool Search(const Bundle& bundle, const Shape& shape, double margin) {
     const double length = Length(v);
     const Vec3d w = SupportPoint(shape, -v, bundle.Origin()) - bundle.Farthest(v);
     const double distance = Dot(v, w) / length;
-    if (distance >= margin && Separates(bundle.Bounding(v * (1 / length)), bundle, shape, margin)) {
-      return true;
+    if (distance >= margin) {
+      normal = bundle.Bounding(v * (1 / length));
+      if (Separates(normal, bundle, shape, margin)) return true;
     }
     if (simplex.count > 0 && (length < margin || length - distance <= kConverged * length)) break;
     if (Holds(simplex, w)) break;
@@ -218,11 +220,28 @@ bool Search(const Bundle& bundle, const Shape& shape, double margin) {
   return false;
 }
 
+bool Search(const Bundle& bundle, const Shape& shape, double margin) {
+  Vec3d unused;
+  return Search(bundle, shape, margin, unused);
+}
+
 }  // namespace
 
 bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin) {
   LT_CHECK(!points.empty());
   return Search(Bundle(points, {}, nullptr, shape), shape, margin);
+}
+
+bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin,
+                    Vec3d& proposal) {
+  LT_CHECK(!points.empty());
+  const Bundle bundle(points, {}, nullptr, shape);
+  const bool has_proposal = LengthSquared(proposal) > 0;
+  if (has_proposal && Separates(proposal, bundle, shape, margin)) return true;
+  Vec3d normal;
+  if (!Search(bundle, shape, margin, normal)) return false;
+  proposal = normal;
+  return true;
 }
 
 bool CertainlyApart(std::span<const Vec3d> points, const Vec3d& direction, const Shape& shape,

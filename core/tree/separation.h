@@ -22,6 +22,11 @@ namespace linetree {
 // gaps of 1e-4 of the size or more, 9 at 1e-6 (swept, as below: none and 25). No allocation.
 bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin);
 
+// The same with a proposal that is tried first: a unit normal, such as separated sets that are much
+// like these, or none (0). Where it says "true", the normal that it has found is left there.
+bool CertainlyApart(std::span<const Vec3d> points, const Shape& shape, double margin,
+                    Vec3d& proposal);
+
 // The same for the unbounded set conv(points) + { s * direction : s >= 0 } (direction of unit
 // length), whose separating planes also have n.direction <= 0.
 bool CertainlyApart(std::span<const Vec3d> points, const Vec3d& direction, const Shape& shape,

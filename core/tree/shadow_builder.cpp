@@ -16,9 +16,9 @@ constexpr double kTangent = 0x1p-10;
 // light), with bounds on their errors.
 struct Height {
   Affine at;
-  double light = 0;
-  double error = 0;
-  double light_error = 0;
+  double light;
+  double error;
+  double light_error;
 
   bool FacesLight() const { return light > light_error; }
 };
@@ -49,7 +49,7 @@ class Builder {
         clearance_(clearance),
         forms_(coefficients) {}
 
-  bool Finish(CellShadow& shadow) { return forms_.Finish(shadow.everywhere, shadow.function); }
+  Shadowing Finish(ShadowFunction& function) { return forms_.Finish(function); }
 
   // All return false where there is no function.
   bool operator()(const BoxShape& /*s*/) { return AddPolyhedron(); }
@@ -77,12 +77,22 @@ class Builder {
   static Height Facing(const Height& height) { return height.light < 0 ? height * -1 : height; }
 
   Height HeightAbove(const Plane& plane) const {
-    const double at_light = is_point_ ? SignedDistance(plane, light_) : Dot(plane.normal, light_);
-    return {{Dot(cell_.corner - plane.point, plane.normal), Dot(cell_.eu, plane.normal),
-             Dot(cell_.ev, plane.normal)},
-            at_light,
-            clearance_,
-            is_point_ ? clearance_ : kFunctionClearance};
+    Height height;
+    height.light = LightAbove(plane);
+    SetRest(plane, height);
+    return height;
+  }
+  double LightAbove(const Plane& plane) const {
+    return is_point_ ? SignedDistance(plane, light_) : Dot(plane.normal, light_);
+  }
+  double LightError() const { return is_point_ ? clearance_ : kFunctionClearance; }
+  // All but the light's.
+  void SetRest(const Plane& plane, Height& height) const {
+    height.at.c = Dot(cell_.corner - plane.point, plane.normal);
+    height.at.s = Dot(cell_.eu, plane.normal);
+    height.at.t = Dot(cell_.ev, plane.normal);
+    height.error = clearance_;
+    height.light_error = LightError();
   }
 
   void AddPencil(const Height& g, const Height& d) {
@@ -125,8 +135,10 @@ bool Builder::AddPolyhedron() {
   std::array<Height, kMaxFunctionFaces> heights;
   size_t facing = 0, others = heights.size();
   for (const Plane& face : planes_.faces) {
-    const Height height = HeightAbove(face);
-    heights[height.FacesLight() ? facing++ : --others] = height;
+    const double light = LightAbove(face);
+    Height& height = heights[light > LightError() ? facing++ : --others];
+    height.light = light;
+    SetRest(face, height);
   }
   if (facing == 0) return false;
   for (size_t i = 0; i < facing && !forms_.PieceMisses(); ++i) {
@@ -141,6 +153,11 @@ bool Builder::AddPolyhedron() {
 
 bool Builder::AddDisc(const Height& d, double radius) {
   if (!d.FacesLight()) return false;
+  forms_.Add(d.at, d.error);
+  if (forms_.PieceMisses()) {
+    forms_.EndPiece();
+    return true;
+  }
   const Height &x = axis_[0], &y = axis_[1];
   const Pencil px = PencilOf(x, d), py = PencilOf(y, d);
   const Affine slope = d.at * weight_ + -d.light;
@@ -149,7 +166,6 @@ bool Builder::AddDisc(const Height& d, double radius) {
   const double margin = (2 * px_bound + px.margin) * px.margin +
                         (2 * py_bound + py.margin) * py.margin +
                         radius * radius * (2 * bound + slope_error) * slope_error;
-  forms_.Add(d.at, d.error);
   forms_.Add(Square(px.at) + Square(py.at) - Square(slope) * (radius * radius), margin);
   forms_.EndPiece();
   return true;
@@ -161,14 +177,11 @@ bool Builder::operator()(const SphereShape& s) {
   EnterFrame(s.frame);
   const double dp = axis_[0].error, dl = axis_[0].light_error;
   Affine polar{-weight_, 0, 0};
-  Quadratic outside{{-1}}, offset, moment;
+  Quadratic outside{{-1}};
   double light_square = 0, bound_square = 0;
-  for (size_t i = 0; i < 3; ++i) {
-    const Height &a = axis_[i], &b = axis_[(i + 1) % 3];
+  for (const Height& a : axis_) {
     polar = polar + a.at * a.light;
     outside = outside + Square(a.at);
-    offset = offset + Square(a.at * weight_ + -a.light);
-    moment = moment + Square(a.at * b.light - b.at * a.light);
     light_square += a.light * a.light;
     bound_square += a.at.Bound() * a.at.Bound();
   }
@@ -178,6 +191,12 @@ bool Builder::operator()(const SphereShape& s) {
   if (!is_light_outside || !(ExtentOf(polar).high < -moment_error) ||
       !(ExtentOf(outside).low > (2 * p + dp) * dp)) {
     return false;
+  }
+  Quadratic offset, moment;
+  for (size_t i = 0; i < 3; ++i) {
+    const Height &a = axis_[i], &b = axis_[(i + 1) % 3];
+    offset = offset + Square(a.at * weight_ + -a.light);
+    moment = moment + Square(a.at * b.light - b.at * a.light);
   }
   const double margin = (2 * p * l + moment_error) * moment_error +
                         (2 * (weight_ * p + l) + offset_error) * offset_error;
@@ -241,14 +260,10 @@ bool Builder::operator()(const FrustumShape& s) {
 
 }  // namespace
 
-CellShadow ShadowBuilder::Build(const Shape& shape, const FacePlanes& planes, double clearance,
-                                std::vector<float>& coefficients) const {
-  const size_t before = coefficients.size();
+Shadowing ShadowBuilder::Build(const Shape& shape, const FacePlanes& planes, double clearance,
+                               std::vector<float>& coefficients, ShadowFunction& function) const {
   Builder builder(cell_, light_, planes, clearance + cell_.pad, coefficients);
-  CellShadow shadow;
-  if (std::visit(builder, shape) && builder.Finish(shadow)) return shadow;
-  coefficients.resize(before);
-  return {};
+  return std::visit(builder, shape) ? builder.Finish(function) : Shadowing::kUnknown;
 }
 
 }  // namespace linetree

@@ -45,13 +45,6 @@ inline constexpr double kFunctionClearance = 0x1p-24;
 // Polyhedra of more faces have no function.
 inline constexpr size_t kMaxFunctionFaces = 16;
 
-// What is known of one object and light over a cell.
-struct CellShadow {
-  // kUnknown: `function` says where, if it has pieces.
-  Shadowing everywhere = Shadowing::kUnknown;
-  ShadowFunction function;
-};
-
 // One planar cell and one light. `clearance` is kFunctionClearance times all lengths involved (the
 // cell, the light, the object, their distances from each other and from the world's origin), world
 // length.
@@ -66,9 +59,10 @@ class ShadowBuilder {
     return std::holds_alternative<FrustumShape>(shape);
   }
 
-  // Adds the function's coefficients to `coefficients`, if there is one.
-  CellShadow Build(const Shape& shape, const FacePlanes& planes, double clearance,
-                   std::vector<float>& coefficients) const;
+  // What is known of the object all over the cell. kUnknown: `function`, which has no pieces
+  // before, says where, if it has some then; its coefficients are added to `coefficients`.
+  Shadowing Build(const Shape& shape, const FacePlanes& planes, double clearance,
+                  std::vector<float>& coefficients, ShadowFunction& function) const;
 
  private:
   const SurfaceChart::PlanarCell& cell_;

@@ -10,10 +10,6 @@ namespace {
 constexpr double kLeastMargin = 0x1p-400;
 constexpr double kMostForm = 0x1p100;
 
-// A piece is empty when nothing of the square is left below this many margins: the cut itself
-// rounds by far less than one.
-constexpr double kCut = 2;
-
 using Corner = std::array<double, 2>;
 }  // namespace
 
@@ -38,16 +34,51 @@ Extent ExtentOf(const Quadratic& form) {
   return extent;
 }
 
-bool ShadowForms::IsNeeded(const Extent& extent, double margin) {
-  if (extent.low > margin) piece_misses_ = true;
-  return is_valid_ && !piece_misses_ && !(extent.high < -margin);
+// Cuts the square by one form after the other.
+bool IsCutAway(const float* lines, size_t line_count) {
+  // A convex polygon has at most one corner more after each cut.
+  constexpr size_t kMaxCorners = 76;
+  std::array<std::array<Corner, kMaxCorners>, 2> buffers;
+  Corner *corners = buffers[0].data(), *kept = buffers[1].data();
+  corners[0] = {0, 0};
+  corners[1] = {1, 0};
+  corners[2] = {1, 1};
+  corners[3] = {0, 1};
+  size_t count = 4;
+  const float* k = lines;
+  for (size_t line = 0; line < line_count; ++line, k += kLinearSize) {
+    const auto value = [&](const Corner& x) {
+      return static_cast<double>(k[0]) + static_cast<double>(k[1]) * x[0] +
+             static_cast<double>(k[2]) * x[1] - kCut;
+    };
+    size_t left = 0;
+    const double first = value(corners[0]);
+    double at_a = first;
+    for (size_t i = 0; i < count; ++i) {
+      const bool is_last = i + 1 == count;
+      const Corner &a = corners[i], &b = corners[is_last ? 0 : i + 1];
+      const double at_b = is_last ? first : value(b);
+      if (left + 2 > kMaxCorners) return false;  // only by rounding, or of many forms
+      if (at_a <= 0) kept[left++] = a;
+      if ((at_a <= 0) != (at_b <= 0)) {
+        const double share = at_a / (at_a - at_b);
+        kept[left++] = {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share};
+      }
+      at_a = at_b;
+    }
+    if (left == 0) return true;
+    std::swap(corners, kept);
+    count = left;
+  }
+  return false;
 }
 
 bool ShadowForms::IsNeeded(const Extent& extent, double bound, double& margin) {
   margin += kFormRounding * bound;
   // Also false for what is not a number.
   if (!(margin > kLeastMargin && bound < kMostForm * margin)) is_valid_ = false;
-  return IsNeeded(extent, margin);
+  if (extent.low > margin) piece_misses_ = true;
+  return is_valid_ && !piece_misses_ && !(extent.high < -margin);
 }
 
 template <size_t kSize>
@@ -79,33 +110,6 @@ void ShadowForms::Add(const Quadratic& form, double margin) {
   Push(k);
 }
 
-// s = (s' + i) / 2 with i of 0 and 1, and t likewise.
-void ShadowForms::AddQuarter(const ShadowFunction& function, const float* coefficients, int child) {
-  const double i = child & 1, j = child >> 1 & 1;
-  const float* k = coefficients + function.begin;
-  const auto at = [&](size_t index) { return static_cast<double>(k[index]); };
-  for (size_t piece = 0; piece < function.pieces; ++piece) {
-    for (size_t line = 0; line < function.lines[piece]; ++line, k += kLinearSize) {
-      const double s = at(1) / 2, t = at(2) / 2;
-      const std::array<double, kLinearSize> form{at(0) + s * i + t * j, s, t};
-      if (IsNeeded(ExtentOf(Affine{form[0], s, t}), 1)) Push(form);
-      if (piece_misses_) {
-        k += static_cast<size_t>(function.lines[piece] - line) * kLinearSize;
-        break;
-      }
-    }
-    const bool is_square = (function.squares >> piece & 1) != 0;
-    if (is_square && !piece_misses_) {
-      const double s = at(1) / 2, t = at(2) / 2, ss = at(3) / 4, st = at(4) / 4, tt = at(5) / 4;
-      const Quadratic form{{at(0) + s * i + t * j + ss * i + st * i * j + tt * j,
-                            s + 2 * ss * i + st * j, t + st * i + 2 * tt * j, ss, st, tt}};
-      if (IsNeeded(ExtentOf(form), 1)) Push(form.k);
-    }
-    if (is_square) k += kQuadraticSize;
-    EndPiece();
-  }
-}
-
 // Most pieces hold a corner of the square, which is quickly seen: it would survive all cuts.
 bool ShadowForms::IsEmpty() const {
   if (piece_lines_ < 2) return false;
@@ -119,46 +123,8 @@ bool ShadowForms::IsEmpty() const {
     is_kept[2] = is_kept[2] && c + s + t <= kCut;
     is_kept[3] = is_kept[3] && c + t <= kCut;
   }
-  return !(is_kept[0] || is_kept[1] || is_kept[2] || is_kept[3]) && IsCutAway();
-}
-
-// Cuts the square by all linear forms of the piece.
-bool ShadowForms::IsCutAway() const {
-  // A convex polygon has at most one corner more after each cut.
-  constexpr size_t kMaxCorners = 4 + kMaxLines;
-  std::array<std::array<Corner, kMaxCorners>, 2> buffers;
-  Corner *corners = buffers[0].data(), *kept = buffers[1].data();
-  corners[0] = {0, 0};
-  corners[1] = {1, 0};
-  corners[2] = {1, 1};
-  corners[3] = {0, 1};
-  size_t count = 4;
-  const float* k = forms_.data() + piece_begin_;
-  for (uint8_t line = 0; line < piece_lines_; ++line, k += kLinearSize) {
-    const auto value = [&](const Corner& x) {
-      return static_cast<double>(k[0]) + static_cast<double>(k[1]) * x[0] +
-             static_cast<double>(k[2]) * x[1] - kCut;
-    };
-    size_t left = 0;
-    const double first = value(corners[0]);
-    double at_a = first;
-    for (size_t i = 0; i < count; ++i) {
-      const bool is_last = i + 1 == count;
-      const Corner &a = corners[i], &b = corners[is_last ? 0 : i + 1];
-      const double at_b = is_last ? first : value(b);
-      if (left + 2 > kMaxCorners) return false;  // only by rounding
-      if (at_a <= 0) kept[left++] = a;
-      if ((at_a <= 0) != (at_b <= 0)) {
-        const double share = at_a / (at_a - at_b);
-        kept[left++] = {a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share};
-      }
-      at_a = at_b;
-    }
-    if (left == 0) return true;
-    std::swap(corners, kept);
-    count = left;
-  }
-  return false;
+  return !(is_kept[0] || is_kept[1] || is_kept[2] || is_kept[3]) &&
+         IsCutAway(forms_.data() + piece_begin_, piece_lines_);
 }
 
 void ShadowForms::EndPiece() {
@@ -168,10 +134,8 @@ void ShadowForms::EndPiece() {
     } else if (piece_lines_ == 0 && !piece_squared_) {
       blocks_ = true;
     } else {
-      if (piece_squared_) {
-        function_.squares = static_cast<uint8_t>(function_.squares | 1 << function_.pieces);
-      }
-      function_.lines[function_.pieces++] = piece_lines_;
+      squares_ |= (piece_squared_ ? 1u : 0u) << pieces_;
+      lines_[pieces_++] = piece_lines_;
     }
   }
   piece_begin_ = size_;
@@ -179,19 +143,22 @@ void ShadowForms::EndPiece() {
   piece_squared_ = piece_misses_ = false;
 }
 
-bool ShadowForms::Finish(Shadowing& everywhere, ShadowFunction& function) {
-  if (!is_valid_) return false;
-  function = {};
-  if (blocks_ || function_.pieces == 0) {
-    everywhere = blocks_ ? Shadowing::kBlocks : Shadowing::kMisses;
-    return true;
-  }
-  everywhere = Shadowing::kUnknown;
-  function = function_;
+// Fields are set one by one, where they stay: what has just been written byte by byte is slow to be
+// copied as a whole.
+Shadowing ShadowForms::Finish(ShadowFunction& function) {
+  const bool is_open = is_valid_ && !blocks_ && pieces_ > 0;
   function.begin = static_cast<uint32_t>(coefficients_.size());
-  coefficients_.insert(coefficients_.end(), forms_.begin(),
-                       forms_.begin() + static_cast<std::ptrdiff_t>(size_));
-  return true;
+  function.pieces = static_cast<uint8_t>(is_open ? pieces_ : 0);
+  function.squares = static_cast<uint8_t>(is_open ? squares_ : 0);
+  for (size_t i = 0; i < kMaxShadowPieces; ++i) {
+    function.lines[i] = static_cast<uint8_t>(is_open ? lines_[i] : 0);
+  }
+  if (is_open) {
+    coefficients_.insert(coefficients_.end(), forms_.begin(),
+                         forms_.begin() + static_cast<std::ptrdiff_t>(size_));
+  }
+  if (!is_valid_ || is_open) return Shadowing::kUnknown;
+  return blocks_ ? Shadowing::kBlocks : Shadowing::kMisses;
 }
 
 }  // namespace linetree

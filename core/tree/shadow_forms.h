@@ -11,9 +11,9 @@
 
 namespace linetree {
 
-// c + s S + t T at (S, T) in [0, 1]^2.
+// c + s S + t T at (S, T) in [0, 1]^2. Not set before it is: there are whole arrays of them.
 struct Affine {
-  double c = 0, s = 0, t = 0;
+  double c, s, t;
 
   friend Affine operator+(const Affine& a, const Affine& b) {
     return {a.c + b.c, a.s + b.s, a.t + b.t};
@@ -63,6 +63,13 @@ inline constexpr int kMaxQuarterings = 8;
 // kMaxQuarterings; and half as much again.
 inline constexpr double kFormRounding = 0x1p-19;
 
+// A piece is empty when nothing of the square is left below this many margins: the cut itself
+// rounds by far less than one.
+inline constexpr double kCut = 2;
+
+// Whether nothing of the square is left below kCut of so many linear forms, one after the other.
+bool IsCutAway(const float* lines, size_t count);
+
 // Adds the pieces of one object's shadow to `coefficients`.
 class ShadowForms {
  public:
@@ -77,24 +84,16 @@ class ShadowForms {
   // others need not be added.
   bool PieceMisses() const { return piece_misses_; }
 
-  // All pieces of a function over a square, as they are over a quarter of it: bit 0 of `child`, the
-  // upper half in s; bit 1, in t. Each time adds one rounding to floats, relative to the sum of the
-  // coefficients' sizes at first: kMaxQuarterings of them are allowed for.
-  void AddQuarter(const ShadowFunction& function, const float* coefficients, int child);
-
-  // With all pieces ended. False when there is no function (something was not finite, or too long);
-  // nothing is added then.
-  bool Finish(Shadowing& everywhere, ShadowFunction& function);
+  // With all pieces ended. kUnknown: `function` says where, if it has pieces; without any there is
+  // no function (something was not finite, or too long). Coefficients are added for pieces only.
+  Shadowing Finish(ShadowFunction& function);
 
  private:
-  // Whether a form is needed.
-  bool IsNeeded(const Extent& extent, double margin);
-  // The same for one in double, whose margin gets the rounding of floats added.
+  // Whether a form is needed, whose margin gets the rounding of floats added.
   bool IsNeeded(const Extent& extent, double bound, double& margin);
   template <size_t kSize>
   void Push(const std::array<double, kSize>& form);
   bool IsEmpty() const;
-  bool IsCutAway() const;
 
   // Linear forms of a piece.
   static constexpr uint8_t kMaxLines = 72;
@@ -103,7 +102,10 @@ class ShadowForms {
   // Those of all pieces so far; what lies beyond size_ is not set.
   std::array<float, kMaxShadowPieces*(kMaxLines* kLinearSize + kQuadraticSize)> forms_;
   size_t size_ = 0, piece_begin_ = 0;
-  ShadowFunction function_;
+  // Of the function: its pieces, of each the number of linear forms, and as bits which are squared.
+  size_t pieces_ = 0;
+  std::array<uint32_t, kMaxShadowPieces> lines_{};
+  uint32_t squares_ = 0;
   uint8_t piece_lines_ = 0;
   bool piece_squared_ = false;
   bool piece_misses_ = false;

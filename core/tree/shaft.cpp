@@ -9,15 +9,21 @@ namespace {
 double Sup(const Box3& b, int i, int j, double ni, double nj) {
   return (ni > 0 ? b.max[i] : b.min[i]) * ni + (nj > 0 ? b.max[j] : b.min[j]) * nj;
 }
-double Magnitude(const Box3& b, int i, int j, double ni, double nj) {
-  return std::abs(ni) * std::max(std::abs(b.min[i]), std::abs(b.max[i])) +
-         std::abs(nj) * std::max(std::abs(b.min[j]), std::abs(b.max[j]));
+// The largest size of each coordinate.
+Vec3d ReachOf(const Box3& b) {
+  Vec3d reach;
+  for (int i = 0; i < 3; ++i) reach[i] = std::max(std::abs(b.min[i]), std::abs(b.max[i]));
+  return reach;
+}
+double Magnitude(const Vec3d& reach, int i, int j, double ni, double nj) {
+  return std::abs(ni) * reach[i] + std::abs(nj) * reach[j];
 }
 
 }  // namespace
 
 Shaft::Shaft(const Box3& from, const Box3& to) : hull_bounds_(from) {
   hull_bounds_.Add(to);
+  const Vec3d reach = ReachOf(hull_bounds_);
   // Seen along an axis, the hull of two rectangles has edges that join like corners. For each pair
   // of coordinates (i, j) and each of the four like corners, the line through both is a candidate;
   // it bounds the hull on the side where both boxes lie.
@@ -41,17 +47,18 @@ Shaft::Shaft(const Box3& from, const Box3& to) : hull_bounds_(from) {
                                ni,
                                nj,
                                std::max(Sup(from, i, j, ni, nj), Sup(to, i, j, ni, nj)),
-                               Magnitude(hull_bounds_, i, j, ni, nj)};
+                               Magnitude(reach, i, j, ni, nj)};
     }
   }
 }
 
 bool Shaft::Misses(const Box3& box) const {
   if (!hull_bounds_.Overlaps(box)) return true;
+  const Vec3d reach = ReachOf(box);
   const auto end = sides_.begin() + static_cast<std::ptrdiff_t>(side_count_);
   return std::any_of(sides_.begin(), end, [&](const HalfSpace& side) {
     const auto& [i, j, ni, nj, offset, magnitude] = side;
-    const double slack = kShaftRounding * (Magnitude(box, i, j, ni, nj) + magnitude);
+    const double slack = kShaftRounding * (Magnitude(reach, i, j, ni, nj) + magnitude);
     return -Sup(box, i, j, -ni, -nj) > offset + slack;
   });
 }

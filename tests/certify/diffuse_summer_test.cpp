@@ -107,7 +107,9 @@ TEST(DiffuseSummer, SumsAreWithinTheirBounds) {
   for (const test::ShapeKind kind : test::kShapeKinds) {
     Seen seen;
     for (int scene = 0; scene < 12; ++scene) {
-      const Scene lit = LitObject(kind, random);
+      Scene lit = LitObject(kind, random);
+      // One time in two there are lamps only, which are looked at side by side.
+      if (scene % 2 == 1) lit.lights.pop_back();
       for (const int depth : {1, 3, 5}) Check(lit, depth, random, seen);
     }
     RecordProperty("largest_error_over_bound", std::to_string(seen.largest));

@@ -64,14 +64,23 @@ TEST(PlaneNodes, EveryTargetGivesTheScalarTwinsBits) {
   }
 }
 
-// Lights in front, behind, in the plane, near, and far beyond what numbers hold.
+// Lights in front, behind, in the plane, near, and far beyond what numbers hold; and, of 24, whole
+// vectors in front.
 TEST(PlaneNodes, EveryTargetTakesTheLightsThatTheScalarTwinTakes) {
   Random random(2);
   size_t taken = 0, behind = 0, others = 0;
-  for (const size_t count : {1, 5, 8, 9, 128}) {
+  for (const size_t count : {1, 5, 8, 9, 24, 128}) {
     const PlaneView plane{random.Direction(), random.InCube(2), 0.5, 3, 1e-9, 1e-5};
     NodeLights lights = LightsOf(random, count);
-    if (count > 8) {
+    for (size_t i = 0; count == 24 && i < count; ++i) {
+      const Vec3d front = plane.center + plane.normal * random.LogUniform(20, 1e6);
+      lights.x[i] = front.x;
+      lights.y[i] = front.y;
+      lights.z[i] = front.z;
+      // Past the first of the second vector that is left out, others move.
+      if (i == 13) lights.y[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (count > 24) {
       lights.x[3] = 1e300;
       lights.y[4] = std::numeric_limits<double>::quiet_NaN();
       lights.z[5] = std::numeric_limits<double>::infinity();
@@ -102,6 +111,23 @@ TEST(PlaneNodes, EveryTargetTakesTheLightsThatTheScalarTwinTakes) {
   EXPECT_GT(taken, 10u);
   EXPECT_GT(behind, 10u);
   EXPECT_GE(others, 4u);
+}
+
+// One that is neither taken nor behind, wherever it is, is noticed.
+TEST(PlaneNodes, LightsAreSettledWhereEachIsTakenOrBehind) {
+  Random random(4);
+  const PlaneView plane{{0, 0, 1}, {}, 0.5, 3, 1e-9, 1e-5};
+  for (const size_t count : {1, 8, 13}) {
+    for (size_t open = 0; open <= count; ++open) {
+      NodeLights lights;
+      for (size_t i = 0; i < count; ++i)
+        lights.Add({0, 0, random.Below(2) ? 1e3 : -1e3}, {1, 1, 1});
+      if (open < count) lights.z[open] = 1e-3;
+      TermSums sums;
+      TakeLights(plane, lights, sums);
+      EXPECT_EQ(lights.AreSettled(count), open == count) << open << " of " << count;
+    }
+  }
 }
 
 TEST(PlaneNodes, InverseRootsKeepTheirBound) {

@@ -44,5 +44,37 @@ TEST(HullViews, SayWhatComputingAnewSays) {
   EXPECT_GT(near, 1000);
 }
 
+// What has separated one bundle is tried first on the next: it neither helps those that meet nor
+// keeps those that do not from being found apart.
+TEST(HullViews, SayOfBundlesWhatComputingAnewSays) {
+  test::Random random(32);
+  std::vector<Shape> shapes;
+  for (int i = 0; i < 40; ++i) {
+    const auto kind = test::kShapeKinds[static_cast<size_t>(i) % test::kShapeKinds.size()];
+    shapes.push_back(test::RandomShape(kind, random, 1, random.InCube(2)));
+  }
+  HullViews views;
+  int apart = 0, near = 0;
+  for (int round = 0; round < 20; ++round) {
+    PatchHull hull;
+    const Vec3d center = random.InCube(2);
+    for (Vec3d& p : hull.points) p = center + random.InCube(0.5);
+    views.Begin(hull);
+    for (int i = 0; i < 1000; ++i) {
+      const int object = random.Below(static_cast<int>(shapes.size()));
+      std::array<Vec3d, 9> points;
+      std::copy(hull.points.begin(), hull.points.end(), points.begin());
+      points[8] = center + random.InCube(8);
+      const Shape& shape = shapes[static_cast<size_t>(object)];
+      const double margin = random.LogUniform(1e-9, 1e-3);
+      const bool is_apart = views.IsBundleApart(object, shape, points, margin);
+      EXPECT_EQ(is_apart, CertainlyApart(points, shape, margin));
+      (is_apart ? apart : near) += 1;
+    }
+  }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(near, 500);
+}
+
 }  // namespace
 }  // namespace linetree

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/scene_builder.h"
 
 namespace linetree {
@@ -53,6 +55,49 @@ TEST_F(LightCertifierTest, AShadowIsOffInsideListedAtItsEdgeAndOnOutside) {
 TEST_F(LightCertifierTest, GlassIsNeverOff) {
   Add(test::Sphere({0, 0, 3}, 1), 1);
   EXPECT_EQ(Knowledge(0.1, 0.1, 4), LightKnowledge::kListed);
+}
+
+// It has no function, and no ray that meets it.
+TEST_F(LightCertifierTest, GlassBesideTheRaysIsNoCandidate) {
+  Add(test::Sphere({0, 0, 3}, 1), 1);
+  EXPECT_EQ(Knowledge(2, 2, 4), LightKnowledge::kOn);
+  // Not even one that the bundle only just passes: the shadow's border is at 1.44.
+  EXPECT_EQ(Knowledge(1.51, 0.01, 7), LightKnowledge::kOn);
+  EXPECT_EQ(Knowledge(1.43, 0.01, 7), LightKnowledge::kListed);
+}
+
+// On flat pieces, where no single piece of a tube's shadow need hold all of them, and on curved
+// ones without functions.
+TEST_F(LightCertifierTest, WhatIsHiddenFromTheWholeHullIsOff) {
+  for (const bool is_flat : {true, false}) {
+    scene_.objects.resize(1);
+    if (!is_flat) scene_.objects[0] = ObjectOf(test::Sphere({0, 0, -4}, 4));
+    Add(test::Frustum({-1, 0.1, 3}, {1, -0.3, 3.5}, 0.9, 0.4, false));
+    const Tracer tracer(scene_);
+    const LightCertifier certifier(tracer);
+    const SurfaceChart chart(scene_.objects[0]);
+    const int patch = chart.Locate(0, {0, 0, 0}).patch;
+    int off = 0, listed = 0;
+    const auto look = [&](const SurfaceCell& cell, const CellLights* larger) {
+      CellLights lights = certifier.Certify(0, chart, patch, cell, larger);
+      const PatchHull hull = chart.HullOf(patch, cell);
+      const bool is_hidden =
+          std::all_of(hull.points.begin(), hull.points.end(), [&](const Vec3d& p) {
+            return tracer.ObjectBlocks(1, p, 0, {0, 0, Side::kOutside});
+          });
+      EXPECT_EQ(lights.lights[0].knowledge == LightKnowledge::kOff, is_hidden);
+      (is_hidden ? off : listed) += 1;
+      return lights;
+    };
+    for (uint32_t i = 0; i < 32 * 32; ++i) {
+      const SurfaceCell cell{5, i % 32, i / 32};
+      const CellLights larger = look(cell, nullptr);
+      if (larger.lights[0].knowledge != LightKnowledge::kListed) continue;
+      for (int child = 0; child < 4; ++child) look(cell.Child(child), &larger);
+    }
+    EXPECT_GT(off, 50);
+    EXPECT_GT(listed, 50);
+  }
 }
 
 // The wall of the tube hides the light from the cell's corners, but light comes down its middle.

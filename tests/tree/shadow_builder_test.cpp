@@ -110,30 +110,29 @@ class Case {
     if (ShadowBuilder::MustBeOutside(shape) && !CertainlyApart(hull.points, shape, clearance)) {
       return;
     }
-    shadow_ = ShadowBuilder(cell_, scene_.lights[0])
-                  .Build(shape, FacePlanesOf(shape), clearance, coefficients_);
+    everywhere_ = ShadowBuilder(cell_, scene_.lights[0])
+                      .Build(shape, FacePlanesOf(shape), clearance, coefficients_, function_);
   }
 
   Shadowing Says(double s, double t) const {
-    if (shadow_.everywhere != Shadowing::kUnknown) return shadow_.everywhere;
-    return ShadowingAt(shadow_.function, coefficients_.data(), static_cast<float>(s),
+    if (everywhere_ != Shadowing::kUnknown) return everywhere_;
+    return ShadowingAt(function_, coefficients_.data(), static_cast<float>(s),
                        static_cast<float>(t));
   }
   bool IsBlocked(double s, double t, const Vec3d& off = {}) const {
     return tracer_->ObjectBlocks(1, cell_.corner + cell_.eu * s + cell_.ev * t + off, 0,
                                  {0, 0, Side::kOutside});
   }
-  bool HasFunction() const {
-    return shadow_.everywhere != Shadowing::kUnknown || shadow_.function.pieces > 0;
-  }
-  const CellShadow& shadow() const { return shadow_; }
+  bool HasFunction() const { return everywhere_ != Shadowing::kUnknown || function_.pieces > 0; }
+  Shadowing everywhere() const { return everywhere_; }
   double pad() const { return cell_.pad; }
 
  private:
   Scene scene_;
   std::optional<Tracer> tracer_;
   SurfaceChart::PlanarCell cell_;
-  CellShadow shadow_;
+  Shadowing everywhere_ = Shadowing::kUnknown;
+  ShadowFunction function_;
   std::vector<float> coefficients_;
 };
 
@@ -162,7 +161,7 @@ Tally Compare(Kind kind, int cases, uint64_t seed) {
     ++tally.cases;
     if (!c.HasFunction()) continue;
     ++tally.functions;
-    tally.decided += c.shadow().everywhere != Shadowing::kUnknown ? 1 : 0;
+    tally.decided += c.everywhere() != Shadowing::kUnknown ? 1 : 0;
     for (int k = 0; k < 16; ++k) {
       double s[2] = {Uniform(rng, 0, 1), Uniform(rng, 0, 1)};
       double t[2] = {Uniform(rng, 0, 1), Uniform(rng, 0, 1)};

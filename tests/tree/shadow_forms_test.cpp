@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "core/tree/shadow_quarters.h"
 #include "tests/support/random.h"
 
 namespace linetree::test {
@@ -34,9 +36,10 @@ class FormOfFloats {
     t = 2 * t - j;
     const std::vector<float> above = std::move(coefficients_);
     coefficients_.clear();
-    ShadowForms forms(coefficients_);
-    forms.AddQuarter(function_, above.data(), i + 2 * j);
-    Finish(forms);
+    const ShadowFunction function = std::exchange(function_, {});
+    ShadowQuarters quarters;
+    quarters.Begin({&function, 1}, above, i + 2 * j);
+    quarters.At(0, coefficients_, function_);
   }
 
   // As ShadowingAt evaluates it.
@@ -49,12 +52,7 @@ class FormOfFloats {
  private:
   void End(ShadowForms& forms) {
     forms.EndPiece();
-    Finish(forms);
-  }
-  void Finish(ShadowForms& forms) {
-    Shadowing everywhere = Shadowing::kUnknown;
-    function_ = {};
-    forms.Finish(everywhere, function_);
+    forms.Finish(function_);
   }
 
   const bool is_linear_;
