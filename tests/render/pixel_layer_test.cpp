@@ -88,7 +88,7 @@ TEST(PixelLayerTest, FramesDoNotDependOnWhatWasThereBefore) {
       for (const int samples : {1, 4}) {
         if (samples > 1 && lanes == Lanes::kScalar) continue;  // slow, and the same as for one
         std::vector<Frame> frames;
-        for (const uint8_t before : {0x7f, 0x33}) {
+        for (const uint8_t before : {uint8_t{0x7f}, uint8_t{0x33}}) {
           Fill(kWidth, kHeight, before);
           SceneHost host(scene);
           FrameRequest request{scene->cameras[0], kWidth, kHeight, {}};
