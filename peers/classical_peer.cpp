@@ -26,7 +26,7 @@ class ClassicalPeer : public Peer {
     if (!frame.ok()) return frame.status();
     PeerPicture picture;
     picture.seconds = (NowUs() - start_us) / 1e6;
-    picture.radiance = std::move(frame->radiance);
+    picture.radiance.assign(frame->radiance.begin(), frame->radiance.end());
     return picture;
   }
 

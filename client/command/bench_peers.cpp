@@ -92,7 +92,7 @@ absl::Status WritePictures(const ScenePeers& scene, const std::string& folder) {
     Frame frame;
     frame.width = scene.width;
     frame.height = scene.height;
-    frame.radiance = row.radiance;
+    frame.radiance.assign(row.radiance.begin(), row.radiance.end());
     const std::string path = absl::StrCat(folder, "/", scene.scene, "_", row.peer, ".png");
     if (auto s = WritePicture(frame, Layer::kBeauty, path); !s.ok()) return s;
   }

@@ -100,6 +100,12 @@ std::string_view NameOf(SpeedTarget::What what) {
   return "";
 }
 
+std::string WhatOf(const TargetResult& result) {
+  std::string what(NameOf(result.target.what));
+  if (result.target.what != SpeedTarget::What::kThreads) return what;
+  return absl::StrFormat("%s (classical: %.2f)", what, result.classical_threads);
+}
+
 using Value = std::function<double(const PathSpeed&)>;
 
 void AddPoint(std::vector<PlotSeries>& all, const std::string& name, double x, double y) {
@@ -243,9 +249,8 @@ std::string TargetTable(const std::vector<TargetResult>& results) {
       return result.roofline ? text(*result.roofline) : std::string("-");
     };
     table.AddRow({t.scene, absl::StrCat(t.width, " x ", t.height), absl::StrCat(t.max_depth),
-                  absl::StrCat(t.epsilon), absl::StrCat(t.samples), NameOf(t.path),
-                  std::string(NameOf(t.what)), Hundredths(t.goal), Hundredths(result.measured),
-                  result.IsMet() ? "yes" : "no",
+                  absl::StrCat(t.epsilon), absl::StrCat(t.samples), NameOf(t.path), WhatOf(result),
+                  Hundredths(t.goal), Hundredths(result.measured), result.IsMet() ? "yes" : "no",
                   roof([](const Roofline& r) { return Hundredths(r.Best()); }),
                   roof([](const Roofline& r) { return Tenths(r.eye); }),
                   roof([](const Roofline& r) { return Tenths(r.branches); }),
@@ -297,6 +302,7 @@ nlohmann::json TargetJson(const TargetResult& result) {
                          {"goal", t.goal},         {"measured", result.measured},
                          {"met", result.IsMet()},  {"largest_error", result.largest_error},
                          {"beyond", result.beyond}};
+  if (t.what == SpeedTarget::What::kThreads) json["classical_threads"] = result.classical_threads;
   if (result.roofline) {
     const Roofline& r = *result.roofline;
     json["roofline"] = {{"best", r.Best()},

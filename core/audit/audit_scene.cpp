@@ -44,12 +44,12 @@ struct Questions {
 
 struct Answers {
   std::vector<Rgb> radiance;
-  std::vector<Source> source;
+  PixelLayer<Source> source;
   FrameStats stats;
   bool from_frame = false;   // rounded to float, whatever the lanes
   double lane_rounding = 0;  // of the Frame or RayBatch
   // The classical answers that were traced the same way, where that is not in double.
-  std::vector<float> same_lanes;
+  PixelLayer<float> same_lanes;
 };
 
 // What surface trees say is to be audited, not whether it pays to ask them.

@@ -60,8 +60,12 @@ TargetResult ResultOf(const SpeedTarget& target, const std::vector<PathSpeed>& s
   const auto speed = std::find_if(speeds.begin(), speeds.end(),
                                   [&](const PathSpeed& s) { return s.path == target.path; });
   LT_CHECK(speed != speeds.end());
-  TargetResult result{target, speed->median_ratio, speed->flight.beyond,
-                      speed->flight.largest_error, roofline};
+  TargetResult result{target,
+                      speed->median_ratio,
+                      speed->flight.beyond,
+                      speed->flight.largest_error,
+                      threads.classical_ratio,
+                      roofline};
   if (target.what == What::kLeast) result.measured = speed->least_ratio;
   if (target.what == What::kThreads) {
     result.measured = threads.ratio;

@@ -38,6 +38,7 @@ struct TargetResult {
   double measured = 0;
   uint64_t beyond = 0;  // pixels of its frames, and how far they are off
   double largest_error = 0;
+  double classical_threads = 0;  // kThreads: what the second one gives classical frames
   // Of its setting. Pixels of several samples have none: some are evaluated once for all of them,
   // without their rays.
   std::optional<Roofline> roofline{};

@@ -1,4 +1,5 @@
-// What a second thread gives: cached frames of one view with one thread and with two, in turn.
+// What a second thread gives: cached frames of one view with one thread and with two, in turn; and,
+// as what the machine has to give, the same of classical frames, whose blocks need nobody.
 #pragma once
 
 #include <memory>
@@ -9,8 +10,9 @@
 namespace linetree {
 
 struct ThreadSpeed {
-  double ratio = 0;      // time with one thread / with two; median of the repeats' last frames
-  uint64_t unequal = 0;  // pixels of all frames that the two differ in
+  double ratio = 0;  // time with one thread / with two; median of the repeats' last frames
+  double classical_ratio = 0;  // the same of classical frames, one of each a repeat
+  uint64_t unequal = 0;        // pixels of all frames that the two differ in
 };
 
 // The scene's first camera, `frames` times with a cache for each of the two.

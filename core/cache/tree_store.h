@@ -88,7 +88,9 @@ class TreeStore {
     const Index* index = index_.get();
     if (index == nullptr) return false;
     for (size_t object = 0; object < index->trees.size(); ++object) {
-      if (!index->wanted[object].exchange(false, std::memory_order_relaxed)) continue;
+      std::atomic<bool>& wanted = index->wanted[object];
+      if (!wanted.load(std::memory_order_relaxed)) continue;  // most are not: a look is cheaper
+      if (!wanted.exchange(false, std::memory_order_relaxed)) continue;
       if (index->trees[object] || !may_grow(object)) continue;
       if (!Plant(object, now, memory_bytes)) return false;
     }

@@ -50,6 +50,10 @@ inline uint32_t SheetWorkOfUnknown(size_t lights) {
   return 3 * kSheetLightWork * static_cast<uint32_t>(lights) / 10;
 }
 
+// What it takes to have trees asked at all, at each shading point of a frame, those included where
+// no tree pays: 2 ns a pixel in tetra_6, where next to nothing is saved.
+inline constexpr double kAskWork = 2;
+
 // What is asked of a surface cell before it is built.
 struct CellTask {
   size_t lights = 0, objects = 0;  // of the scene
@@ -119,6 +123,7 @@ class FramePlan {
   void Book(size_t object, const PacketWork& work) {
     Account& account = accounts_[object];
     booked_.fetch_add(work.classical, std::memory_order_relaxed);
+    booked_points_.fetch_add(work.points, std::memory_order_relaxed);
     const int64_t gain = int64_t{work.classical} - int64_t{work.asked};
     if (work.known) {
       account.gained.fetch_add(gain, std::memory_order_relaxed);
@@ -148,7 +153,8 @@ class FramePlan {
     std::lock_guard lock(decide_mutex_);
     Booked booked = {static_cast<double>(booked_.exchange(0, std::memory_order_relaxed)), 0,
                      static_cast<double>(promised_.exchange(0, std::memory_order_relaxed))};
-    bool wants_any = false, pays_any = false, hopes_any = false;
+    const auto booked_points = static_cast<double>(booked_points_.exchange(0));
+    bool wants_any = false, hopes_any = false;
     uint64_t points = 0, asked = 0, classical = 0;
     for (size_t object = 0; object < accounts_.size(); ++object) {
       Account& account = accounts_[object];
@@ -165,7 +171,6 @@ class FramePlan {
       booked.saved += pays ? gained : 0;
       booked.promised += pays ? 0 : std::max(gained, 0.0);
       wants_any = wants_any || saved > 0;
-      pays_any = pays_any || pays;
       hopes_any = hopes_any || (saved > 0 && !pays);
       points += own_points;
       asked += own_asked;
@@ -179,7 +184,7 @@ class FramePlan {
     if (points > 0) usual_ = SavedOf(points, asked, classical);
     if (points > 0) {
       wants_any_ = wants_any;
-      pays_any_ = pays_any;
+      if (booked_points > 0) pays_any_ = booked.saved > kAskWork * booked_points;
       hopes_any_ = hopes_any;
     }
     ++decisions_;
@@ -199,8 +204,8 @@ class FramePlan {
     is_promising_ = former.is_promising_.load();
   }
 
-  // Whether some object's trees are worth growing; pay as they are; are worth growing, but do not
-  // pay yet.
+  // Whether some object's trees are worth growing; pay as they are, together enough for trees to be
+  // asked at all; are worth growing, but do not pay yet.
   bool WantsAny() const { return always_ || wants_any_; }
   bool PaysAny() const { return always_ || pays_any_; }
   bool HopesAny() const { return always_ || hopes_any_; }
@@ -267,7 +272,7 @@ class FramePlan {
   std::atomic<float> usual_{1};    // saved per point, of all objects together
   std::atomic<bool> wants_any_{true}, pays_any_{false}, hopes_any_{true};
   std::atomic<bool> is_promising_{true};
-  std::atomic<int64_t> booked_{0}, promised_{0};
+  std::atomic<int64_t> booked_{0}, booked_points_{0}, promised_{0};
   std::atomic<uint32_t> decisions_{0};
   std::mutex decide_mutex_;
 };

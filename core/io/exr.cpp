@@ -244,7 +244,7 @@ absl::StatusOr<Frame> Decode(Imf::InputFile& file, int64_t max_pixels) {
   frame.height = static_cast<int>(height);
   const auto pixels = static_cast<size_t>(width * height);
   frame.stats.pixels = pixels;
-  frame.radiance.resize(3 * pixels);
+  frame.radiance.resize(3 * pixels, 0);
   Imf::FrameBuffer buffer;
   AddBeauty(buffer, frame.radiance.data(), window);
   bool layered = true;
@@ -253,10 +253,10 @@ absl::StatusOr<Frame> Decode(Imf::InputFile& file, int64_t max_pixels) {
   }
   UintLayers layers(layered ? pixels : 0);
   if (layered) {
-    frame.object.resize(pixels);
-    frame.source.resize(pixels);
-    frame.verdict.resize(pixels);
-    frame.depth.resize(pixels);
+    frame.object.resize(pixels, 0);
+    frame.source.resize(pixels, {});
+    frame.verdict.resize(pixels, {});
+    frame.depth.resize(pixels, 0);
     AddLayers(buffer, layers, frame.depth.data(), window);
   }
   file.setFrameBuffer(buffer);

@@ -53,7 +53,7 @@ struct DepthRange {
   double far = 0;
 };
 
-DepthRange RangeOf(const std::vector<float>& depth) {
+DepthRange RangeOf(const PixelLayer<float>& depth) {
   DepthRange range;
   for (const float d : depth) {
     if (!std::isfinite(d)) continue;

@@ -21,17 +21,17 @@ size_t RowStart(const v1::Tile& tile, int row, int frame_width) {
 }
 
 template <class Values, class Value>
-void AppendRow(const std::vector<Value>& layer, size_t start, size_t count, Values* out) {
+void AppendRow(const PixelLayer<Value>& layer, size_t start, size_t count, Values* out) {
   const auto first = layer.begin() + static_cast<std::ptrdiff_t>(start);
   out->Add(first, first + static_cast<std::ptrdiff_t>(count));
 }
 
 template <class Value>
-void AppendBytes(const std::vector<Value>& layer, size_t start, size_t count, std::string* out) {
+void AppendBytes(const PixelLayer<Value>& layer, size_t start, size_t count, std::string* out) {
   for (size_t i = start; i < start + count; ++i) out->push_back(static_cast<char>(layer[i]));
 }
 
-void AppendHalves(const std::vector<float>& layer, size_t start, size_t count, std::string* out) {
+void AppendHalves(const PixelLayer<float>& layer, size_t start, size_t count, std::string* out) {
   for (size_t i = start; i < start + count; ++i) {
     const uint16_t bits = Imath::half(layer[i]).bits();
     out->push_back(static_cast<char>(bits & 0xff));
@@ -179,13 +179,13 @@ FrameAssembler::FrameAssembler(int width, int height, const FrameFormat& format)
   frame_.width = width;
   frame_.height = height;
   if (IsFile(format.codec)) return;
-  frame_.radiance.resize(3 * pixels);
+  frame_.radiance.resize(3 * pixels, 0);
   filled_.resize(pixels);
   if (!format.all_layers) return;
-  frame_.object.resize(pixels);
-  frame_.source.resize(pixels);
-  frame_.verdict.resize(pixels);
-  frame_.depth.resize(pixels);
+  frame_.object.resize(pixels, 0);
+  frame_.source.resize(pixels, {});
+  frame_.verdict.resize(pixels, {});
+  frame_.depth.resize(pixels, 0);
 }
 
 absl::Status FrameAssembler::Add(const v1::FrameChunk& chunk) {

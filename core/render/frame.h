@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/render/pixel_layer.h"
 #include "core/scene/camera.h"
 #include "core/scene/pixel_samples.h"
 #include "core/scene/scene.h"
@@ -65,13 +66,13 @@ struct FrameTiming {
 struct Frame {
   int width = 0;
   int height = 0;
-  std::vector<float> radiance;  // 3 * width * height, linear RGB
-  std::vector<int32_t> object;  // index of the object seen, -1 for the background
-  std::vector<Source> source;
-  std::vector<Verdict> verdict;
+  PixelLayer<float> radiance;  // 3 * width * height, linear RGB
+  PixelLayer<int32_t> object;  // index of the object seen, -1 for the background
+  PixelLayer<Source> source;
+  PixelLayer<Verdict> verdict;
   // Distance from the eye, infinity for the background; by packets above epsilon 0 within 2^-20 of
   // it.
-  std::vector<float> depth;
+  PixelLayer<float> depth;
   Camera camera;
   Sampling sampling;
   double max_relative_error = 0;

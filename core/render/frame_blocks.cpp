@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/frame/frame_kernels.h"
 #include "core/packet/packet_scene.h"
+#include "core/render/block_loop.h"
 #include "core/render/block_tiles.h"
 #include "core/render/grow_trees.h"
 #include "core/render/sample_blocks.h"
@@ -28,8 +26,6 @@ constexpr double kLeastPromise = 0.01, kLargePromise = 0.1;
 constexpr double kSureShare = 0.1, kTrialShare = 0.01;
 // What cells save of the frame's work for it to be cut once more.
 constexpr double kWorthTrying = 0.05;
-// Blocks that one parallel loop handles: enough to hide its cost, few enough to stop soon.
-constexpr size_t kSliceBlocks = 256;
 
 // Adds the time that it lives to `ms`.
 class StageTimer {
@@ -58,15 +54,14 @@ class Blocks {
         options_(options),
         eye_rays_(eye_rays),
         pool_(pool),
-        cancel_(cancel),
-        progress_(progress),
+        loop_(pool, cancel, progress, frame.stats.cpu_ms),
         frame_(frame),
         across_((frame.width + kBlockSide - 1) / kBlockSide),
         down_((frame.height + kBlockSide - 1) / kBlockSide) {
     if (!frame.sampling.IsPlain()) samples_.emplace(frame.sampling);
   }
 
-  bool IsCancelled() const { return cancel_ != nullptr && cancel_->IsCancelled(); }
+  bool IsCancelled() const { return loop_.IsCancelled(); }
 
   void RenderClassical() {
     if (samples_) {
@@ -95,8 +90,6 @@ class Blocks {
   // What sums may be off by.
   double SumError() const { return options_.max_relative_error - packets_.radiance_rounding(); }
 
-  template <class Fn>
-  void ForBlocks(double from, double to, RayCounts& rays, Fn&& body);
   // Without `asking` no tree is asked.
   void RenderWave(double from, double to, std::optional<Asking> asking, const TilesOf& tiles_of);
   void RenderSamples(double from, double to, std::optional<Asking> asking);
@@ -141,8 +134,7 @@ class Blocks {
   const RenderOptions& options_;
   const EyeRays& eye_rays_;
   WorkerPool& pool_;
-  const CancelToken* cancel_;
-  const Progress& progress_;
+  BlockLoop loop_;
   Frame& frame_;
   const int across_, down_;
   // Of frames with several to a pixel. Their trees learn from rays through the pixels' centres,
@@ -154,39 +146,7 @@ class Blocks {
   std::vector<BookedPackets> booked_;
   double share_ = 0;
   bool books_ = false;  // this wave
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<PacketWorkspace>> idle_;  // guarded by mutex_
 };
-
-// body(block, workspace, counts) for all blocks; reports progress from one share to the other.
-template <class Fn>
-void Blocks::ForBlocks(double from, double to, RayCounts& rays, Fn&& body) {
-  const size_t count = BlockCount();
-  for (size_t begin = 0; begin < count && !IsCancelled(); begin += kSliceBlocks) {
-    std::vector<PacketCounts> counts(std::min(kSliceBlocks, count - begin));
-    pool_.ParallelFor(
-        counts.size(),
-        [&](size_t i) {
-          if (IsCancelled()) return;
-          std::unique_ptr<PacketWorkspace> workspace;
-          {
-            std::lock_guard lock(mutex_);
-            if (!idle_.empty()) {
-              workspace = std::move(idle_.back());
-              idle_.pop_back();
-            }
-          }
-          if (!workspace) workspace = std::make_unique<PacketWorkspace>();
-          body(begin + i, *workspace, counts[i]);
-          std::lock_guard lock(mutex_);
-          idle_.push_back(std::move(workspace));
-        },
-        &frame_.stats.cpu_ms);
-    for (const PacketCounts& c : counts) rays += c.rays;
-    const double done = static_cast<double>(begin + counts.size()) / static_cast<double>(count);
-    if (progress_) progress_(from + (to - from) * done);
-  }
-}
 
 void Blocks::RenderTask(const BlockTask& task, std::optional<Asking> asking,
                         PacketWorkspace& workspace, PacketCounts& counts, BookedPackets* booked) {
@@ -205,22 +165,24 @@ void Blocks::RenderWave(double from, double to, std::optional<Asking> asking,
   const auto books = [&](size_t block) { return books_ && booked_[block].tiles != 0; };
   std::vector<UseCounts> uses(BlockCount());
   RayCounts& rays = samples_ ? frame_.stats.ip : frame_.stats.base;
-  ForBlocks(from, to, rays, [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
-    const uint64_t tiles = tiles_of(block);
-    if (tiles == 0) return;
-    const PixelTarget target = Target();
-    const PacketTracer::Region region = RegionOf(block);
-    const BlockTask task = {
-        eye_rays_, region, options_.limits, Stride(), target, packets_.sees_squares(), tiles};
-    const bool asked = pays || books(block);
-    RenderTask(task, asked ? asking : std::nullopt, workspace, counts,
-               books(block) ? &booked_[block] : nullptr);
-    StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
-  });
+  loop_.Run(BlockCount(), from, to, rays,
+            [&](size_t block, PacketWorkspace& workspace, PacketCounts& counts) {
+              const uint64_t tiles = tiles_of(block);
+              if (tiles == 0) return;
+              const PixelTarget target = Target();
+              const PacketTracer::Region region = RegionOf(block);
+              const BlockTask task = {eye_rays_, region, options_.limits,
+                                      Stride(),  target, packets_.sees_squares(),
+                                      tiles};
+              const bool asked = pays || books(block);
+              RenderTask(task, asked ? asking : std::nullopt, workspace, counts,
+                         books(block) ? &booked_[block] : nullptr);
+              StoreSources(region, tiles, workspace.uses(), asked, frame_, uses[block]);
+            });
   if (samples_) return;
-  for (size_t block = 0; block < uses.size(); ++block) {
-    AddSources(uses[block], pays || books(block), frame_.stats);
-  }
+  UseCounts all[2];  // of blocks where trees were not asked, and where they were
+  for (size_t block = 0; block < uses.size(); ++block) all[pays || books(block)] += uses[block];
+  for (const bool asked : {false, true}) AddSources(all[asked], asked, frame_.stats);
 }
 
 void Blocks::RenderOnce(size_t block, PacketWorkspace& workspace, PacketCounts& counts,
@@ -253,8 +215,10 @@ void Blocks::RenderSamples(double from, double to, std::optional<Asking> asking)
     RenderSampledBlock(sampled, RegionOf(block), render, evaluates_once ? &once : nullptr,
                        uses[block]);
   };
-  ForBlocks(from, to, frame_.stats.base, body);
-  for (const UseCounts& counts : uses) AddSources(counts, sampled.asked, frame_.stats);
+  loop_.Run(BlockCount(), from, to, frame_.stats.base, body);
+  UseCounts all;
+  for (const UseCounts& counts : uses) all += counts;
+  AddSources(all, sampled.asked, frame_.stats);
 }
 
 double Blocks::Grow(const Growth& growth) {
@@ -353,11 +317,12 @@ void Blocks::RenderRest() {
 FramePlan::Booked Blocks::BookAgain() {
   const StageTimer timer(frame_.stages.probe_ms);
   RayCounts none;
-  ForBlocks(0.1, 0.1, none, [&](size_t block, PacketWorkspace& workspace, PacketCounts&) {
-    if (booked_[block].packets.empty()) return;
-    const SurfaceCache::Reader reader(surfaces_, SumError());
-    BookAgainWide(packets_.scene(), booked_[block], reader, plan_, workspace);
-  });
+  loop_.Run(BlockCount(), 0.1, 0.1, none,
+            [&](size_t block, PacketWorkspace& workspace, PacketCounts&) {
+              if (booked_[block].packets.empty()) return;
+              const SurfaceCache::Reader reader(surfaces_, SumError());
+              BookAgainWide(packets_.scene(), booked_[block], reader, plan_, workspace);
+            });
   return plan_.Decide();
 }
 

@@ -14,7 +14,7 @@ struct Answer {
   Verdict verdict = Verdict::kUntried;
 };
 
-Answer AnswerOf(size_t use, bool asked) {
+constexpr Answer AnswerOf(size_t use, bool asked) {
   if ((use & kMissed) != 0) return {Source::kBackground, Verdict::kUntried};
   if (!asked) return {};
   if ((use & kSearched) == 0) {
@@ -24,6 +24,22 @@ Answer AnswerOf(size_t use, bool asked) {
   return (use & kListed) != 0 ? Answer{Source::kResidual, Verdict::kUntried} : Answer{};
 }
 
+// By use.
+struct AnswerTable {
+  Source source[kPixelUses];
+  Verdict verdict[kPixelUses];
+};
+constexpr AnswerTable TableOf(bool asked) {
+  AnswerTable table{};
+  for (size_t use = 0; use < kPixelUses; ++use) {
+    const Answer answer = AnswerOf(use, asked);
+    table.source[use] = answer.source;
+    table.verdict[use] = answer.verdict;
+  }
+  return table;
+}
+constexpr AnswerTable kTables[] = {TableOf(false), TableOf(true)};
+
 // Where one tile's pixels lie in the frame.
 struct TilePixels {
   size_t first;  // top left
@@ -31,11 +47,38 @@ struct TilePixels {
   int columns, rows;
 };
 
-void StoreAlike(const TilePixels& at, const Answer& answer, Frame& frame) {
-  for (int row = 0; row < at.rows; ++row) {
-    const size_t p = at.first + static_cast<size_t>(row) * at.stride;
-    std::fill_n(frame.source.data() + p, at.columns, answer.source);
-    std::fill_n(frame.verdict.data() + p, at.columns, answer.verdict);
+void StorePartial(const TilePixels& at, const uint8_t* uses, const AnswerTable& table, Frame& frame,
+                  UseCounts& counts) {
+  for (int y = 0; y < at.rows; ++y) {
+    for (int x = 0; x < at.columns; ++x) {
+      const uint8_t use = uses[y * kTileSide + x];
+      ++counts.of[use];
+      const size_t p = at.first + static_cast<size_t>(y) * at.stride + static_cast<size_t>(x);
+      frame.source[p] = table.source[use];
+      frame.verdict[p] = table.verdict[use];
+    }
+  }
+}
+
+void StoreWhole(const TilePixels& at, const uint8_t* uses, const AnswerTable& table, Frame& frame,
+                UseCounts& counts) {
+  Source source[kPacketLanes];
+  Verdict verdict[kPacketLanes];
+  if (std::memcmp(uses, uses + 1, kPacketLanes - 1) == 0) {
+    counts.of[uses[0]] += kPacketLanes;
+    std::fill_n(source, kPacketLanes, table.source[uses[0]]);
+    std::fill_n(verdict, kPacketLanes, table.verdict[uses[0]]);
+  } else {
+    for (size_t lane = 0; lane < kPacketLanes; ++lane) {
+      ++counts.of[uses[lane]];
+      source[lane] = table.source[uses[lane]];
+      verdict[lane] = table.verdict[uses[lane]];
+    }
+  }
+  for (size_t y = 0; y < kTileSide; ++y) {
+    std::memcpy(frame.source.data() + at.first + y * at.stride, source + y * kTileSide, kTileSide);
+    std::memcpy(frame.verdict.data() + at.first + y * at.stride, verdict + y * kTileSide,
+                kTileSide);
   }
 }
 
@@ -43,7 +86,9 @@ void StoreAlike(const TilePixels& at, const Answer& answer, Frame& frame) {
 
 void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8_t* uses,
                   bool asked, Frame& frame, UseCounts& counts) {
+  static_assert(sizeof(Source) == 1 && sizeof(Verdict) == 1);
   const auto stride = static_cast<size_t>(frame.width);
+  const AnswerTable& table = kTables[asked ? 1 : 0];
   const int across = (block.width + kTileSide - 1) / kTileSide;
   const int down = (block.height + kTileSide - 1) / kTileSide;
   for (int tile = 0; tile < across * down; ++tile) {
@@ -54,21 +99,7 @@ void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8
         stride, std::min(kTileSide, block.width - column), std::min(kTileSide, block.height - row)};
     const uint8_t* own = uses + tile * kPacketLanes;
     const bool whole = at.columns == kTileSide && at.rows == kTileSide;
-    if (whole && std::memcmp(own, own + 1, kPacketLanes - 1) == 0) {
-      counts.of[own[0]] += kPacketLanes;
-      StoreAlike(at, AnswerOf(own[0], asked), frame);
-      continue;
-    }
-    for (int y = 0; y < at.rows; ++y) {
-      for (int x = 0; x < at.columns; ++x) {
-        const uint8_t use = own[y * kTileSide + x];
-        ++counts.of[use];
-        const Answer answer = AnswerOf(use, asked);
-        const size_t p = at.first + static_cast<size_t>(y) * stride + static_cast<size_t>(x);
-        frame.source[p] = answer.source;
-        frame.verdict[p] = answer.verdict;
-      }
-    }
+    (whole ? StoreWhole : StorePartial)(at, own, table, frame, counts);
   }
 }
 

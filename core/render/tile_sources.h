@@ -13,6 +13,11 @@ namespace linetree {
 // Pixels by PixelUse.
 struct UseCounts {
   std::array<uint64_t, kPixelUses> of{};
+
+  UseCounts& operator+=(const UseCounts& o) {
+    for (size_t use = 0; use < of.size(); ++use) of[use] += o.of[use];
+    return *this;
+  }
 };
 
 // Stores the sources and verdicts of those of the block's tiles, row by row, whose bit is set.
@@ -26,7 +31,7 @@ void StoreSources(const PacketTracer::Region& block, uint64_t tiles, const uint8
 void StoreOnce(const PacketTracer::Region& block, const LaneMask* done, const uint8_t* uses,
                uint64_t each, Frame& frame, UseCounts& counts);
 
-// Adds a block's pixels to the frame's counters.
+// Adds pixels to the frame's counters.
 void AddSources(const UseCounts& counts, bool asked, FrameStats& stats);
 
 }  // namespace linetree

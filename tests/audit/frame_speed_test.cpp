@@ -9,10 +9,10 @@
 namespace linetree {
 namespace {
 
-Frame FrameOf(std::vector<float> radiance) {
+Frame FrameOf(const std::vector<float>& radiance) {
   Frame frame;
   frame.object.resize(radiance.size() / 3);
-  frame.radiance = std::move(radiance);
+  frame.radiance.assign(radiance.begin(), radiance.end());
   return frame;
 }
 

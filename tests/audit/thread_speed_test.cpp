@@ -15,6 +15,7 @@ TEST(ThreadSpeedTest, PicturesDoNotDependOnTheNumberOfThreads) {
   ASSERT_TRUE(speed.ok()) << speed.status();
   EXPECT_EQ(speed->unequal, 0u);
   EXPECT_GT(speed->ratio, 0);
+  EXPECT_GT(speed->classical_ratio, 0);
 }
 
 }  // namespace

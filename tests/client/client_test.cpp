@@ -196,7 +196,7 @@ TEST_F(ClientTest, AWholeFrameArrives) {
   service_.chunks = ChunksOf(100, 70);
   const auto frame = Connect()->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
-  EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
+  EXPECT_EQ(frame->radiance, PixelLayer<float>(3 * 100 * 70, 0.5f));
 }
 
 TEST_F(ClientTest, AFrameThatBreaksOffIsAskedForAgain) {
@@ -205,7 +205,7 @@ TEST_F(ClientTest, AFrameThatBreaksOffIsAskedForAgain) {
   const auto frame =
       Connect({.retry = kQuick})->RenderFrame("room", RequestOf(100, 70), "", {}, nullptr);
   ASSERT_TRUE(frame.ok()) << frame.status();
-  EXPECT_EQ(frame->radiance, std::vector<float>(3 * 100 * 70, 0.5f));
+  EXPECT_EQ(frame->radiance, PixelLayer<float>(3 * 100 * 70, 0.5f));
   EXPECT_EQ(service_.calls, 2);
 }
 

@@ -37,6 +37,29 @@ TEST(FramePlanTest, TreesAreAskedOnceTheyPayAsTheyAre) {
   EXPECT_FALSE(plan.Pays(0));
 }
 
+// To ask at all costs something everywhere: not where little of what is seen is worth it.
+TEST(FramePlanTest, TreesAreAskedWhereTheyPayForAskingEverywhere) {
+  FramePlan plan(2);
+  const auto book = [&](int packets_without) {
+    plan.Book(0, Work(200, 1000));
+    for (int i = 0; i < packets_without; ++i) plan.Book(1, Work(120, 100));
+    plan.Decide();
+  };
+  const int bearable = static_cast<int>(800 / (16 * kAskWork)) - 2;
+  book(bearable);
+  EXPECT_TRUE(plan.Pays(0));
+  EXPECT_TRUE(plan.PaysAny());
+  book(bearable + 2);
+  EXPECT_TRUE(plan.Pays(0)) << "its own packets gain as much as before";
+  EXPECT_FALSE(plan.PaysAny());
+  plan.Decide();
+  EXPECT_FALSE(plan.PaysAny()) << "where nothing was booked nothing is decided anew";
+  book(0);
+  EXPECT_TRUE(plan.PaysAny());
+  plan.Decide();
+  EXPECT_TRUE(plan.PaysAny());
+}
+
 // What is known, but not asked, saves nothing; what that would save is still a promise.
 TEST(FramePlanTest, WhatIsKnownIsSavedWhereTreesAreAsked) {
   FramePlan plan(2);

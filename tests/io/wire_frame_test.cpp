@@ -214,9 +214,9 @@ TEST(WireFrameTest, EveryFormIsPutTogetherAgain) {
         continue;
       }
       EXPECT_EQ(back.radiance, frame.radiance);
-      EXPECT_EQ(back.object, all_layers ? frame.object : std::vector<int32_t>());
-      EXPECT_EQ(back.verdict, all_layers ? frame.verdict : std::vector<Verdict>());
-      EXPECT_EQ(back.depth, all_layers ? frame.depth : std::vector<float>());
+      EXPECT_EQ(back.object, all_layers ? frame.object : PixelLayer<int32_t>());
+      EXPECT_EQ(back.verdict, all_layers ? frame.verdict : PixelLayer<Verdict>());
+      EXPECT_EQ(back.depth, all_layers ? frame.depth : PixelLayer<float>());
     }
   }
 }

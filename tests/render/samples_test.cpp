@@ -39,7 +39,7 @@ FrameRequest Request(const Camera& camera, const Sampling& sampling, Mode mode, 
 // The means of what Tracer says, one ray after the other.
 struct Truth {
   std::vector<Rgb> radiance;
-  std::vector<int32_t> object;
+  PixelLayer<int32_t> object;
   std::vector<double> depth;
 };
 

@@ -202,12 +202,12 @@ TEST(SceneHostEvictionTest, WhatIsKeptChangesNoAnswer) {
     request.options.max_relative_error = 0;
     auto frame = host.RenderFrame(request, pool);
     EXPECT_TRUE(frame.ok()) << frame.status();
-    return frame.ok() ? frame->radiance : std::vector<float>();
+    return frame.ok() ? frame->radiance : PixelLayer<float>();
   };
   std::vector<std::thread> sessions;
   for (int view = 0; view < 3; ++view) {
     sessions.emplace_back([&, view] {
-      const std::vector<float> classical = render(view, Mode::kClassical);
+      const PixelLayer<float> classical = render(view, Mode::kClassical);
       for (int i = 0; i < 8; ++i) EXPECT_EQ(render(view, Mode::kCached), classical) << view;
     });
   }

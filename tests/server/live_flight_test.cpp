@@ -16,7 +16,7 @@ FrameRequest View(int width, int height, double x = 0) {
   return request;
 }
 
-std::vector<float> Rendered(const FrameRequest& request) {
+PixelLayer<float> Rendered(const FrameRequest& request) {
   SceneHost host(test::BuiltBallScene());
   WorkerPool pool(1);
   return host.RenderFrame(request, pool)->radiance;
@@ -106,7 +106,7 @@ TEST(LiveFlightTest, WhoeverGivesUpWaitsForNothing) {
 TEST(LiveFlightTest, FramesComeInEveryForm) {
   test::RunningServer running;
   const FrameRequest view = View(30, 20);
-  const std::vector<float> classical = Rendered(view);
+  const PixelLayer<float> classical = Rendered(view);
   for (const FrameCodec codec : {FrameCodec::kFloat, FrameCodec::kHalf, FrameCodec::kExr,
                                  FrameCodec::kPng, FrameCodec::kJpeg}) {
     std::vector<Frame> frames;

@@ -110,8 +110,8 @@ TEST(RenderCommand, PixelsHaveSeveralSamples) {
     EXPECT_EQ(run.exit_status, 0) << run.err;
     return ReadExr(dir.File("a.exr"))->radiance;
   };
-  const std::vector<float> one = render({"--lanes", "simd"});
-  const std::vector<float> nine = render({"--lanes", "simd", "--samples", "9"});
+  const PixelLayer<float> one = render({"--lanes", "simd"});
+  const PixelLayer<float> nine = render({"--lanes", "simd", "--samples", "9"});
   EXPECT_NE(one, nine);
   const nlohmann::json json = ReadJson(dir.File("a.json"));
   const auto pixels = json["width"].get<int>() * json["height"].get<int>();
