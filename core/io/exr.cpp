@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -188,6 +189,30 @@ absl::Status UnpackLayers(const UintLayers& layers, Frame& frame) {
   return absl::OkStatus();
 }
 
+// Names, each up to a zero, with 16 bytes behind it; an empty one ends them.
+bool IsChannelList(std::string_view value) {
+  constexpr size_t kChannelBytes = 16;
+  size_t at = 0;
+  while (at < value.size() && value[at] != 0) {
+    const size_t end = value.find('\0', at);
+    if (end == value.npos || value.size() - end <= kChannelBytes) return false;
+    at = end + 1 + kChannelBytes;
+  }
+  return at + 1 == value.size();
+}
+
+// OpenEXR reads what a type takes, whatever size the header claims, and goes on behind that: where
+// they differ, it would see other attributes than CheckHeader. Of the types that EncodeExr writes.
+bool IsValueOf(std::string_view type, std::string_view value) {
+  constexpr std::pair<std::string_view, size_t> kSizes[] = {
+      {"box2i", 16},    {"compression", 1}, {"double", 8}, {"float", 4},
+      {"lineOrder", 1}, {"v2f", 8},         {"v3d", 24}};
+  if (type == "chlist") return IsChannelList(value);
+  return type == "string" || std::any_of(std::begin(kSizes), std::end(kSizes), [&](const auto& of) {
+           return of.first == type && of.second == value.size();
+         });
+}
+
 // OpenEXR sets memory aside for whatever a header claims, so what it claims is looked at before.
 // Layout: a magic number and a version, 4 bytes each; then attributes: name and type, each up to a
 // zero, 4 bytes of size, and the value. An empty name ends them.
@@ -211,7 +236,11 @@ absl::Status CheckHeader(std::string_view bytes, int64_t max_pixels) {
     const size_t size = number(type_end + 1);
     at = type_end + 5;
     if (size > bytes.size() - at) return bad("an attribute ends behind its end");
-    if (name == "dataWindow" && size == 16) {
+    const std::string_view type = bytes.substr(name_end + 1, type_end - name_end - 1);
+    if (!IsValueOf(type, bytes.substr(at, size))) {
+      return bad("an attribute is not as large as its type");
+    }
+    if (name == "dataWindow" && type == "box2i") {
       const auto side = [&](size_t axis) {
         return int64_t{static_cast<int32_t>(number(at + 8 + 4 * axis))} -
                static_cast<int32_t>(number(at + 4 * axis)) + 1;

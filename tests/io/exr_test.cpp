@@ -110,6 +110,26 @@ TEST(Exr, AttributesThatErrorFiguresCannotUseAreRefused) {
   EXPECT_EQ(ReadExr(dir.File("a.exr")).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
+// OpenEXR goes on behind what a type takes, and would believe the sizes that it finds there.
+TEST(Exr, AttributesOfOtherSizesThanTheirTypesAreRefused) {
+  const std::string good = EncodeExr(MakeFrame(4, 3));
+  ASSERT_TRUE(DecodeExr(good).ok());
+  using namespace std::string_literals;
+  for (const auto& attribute : {"dataWindow\0box2i\0"s, "fov_deg\0double\0"s, "eye\0v3d\0"s,
+                                "channels\0chlist\0"s, "compression\0compression\0"s}) {
+    const size_t at = good.find(attribute);
+    ASSERT_NE(at, good.npos) << attribute;
+    std::string bad = good;
+    bad[at + attribute.size()] ^= 1;
+    EXPECT_THAT(std::string(DecodeExr(bad).status().message()),
+                HasSubstr("an attribute is not as large as its type"))
+        << attribute;
+  }
+  std::string unknown = good;
+  unknown.replace(unknown.find("fov_deg\0double"s) + 8, 6, "dbuole");
+  EXPECT_EQ(DecodeExr(unknown).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
 TEST(Exr, HalfAFileIsRefused) {
   TempDir dir;
   ASSERT_EQ(WriteExr(MakeFrame(64, 64), dir.File("a.exr")), absl::OkStatus());
