@@ -37,7 +37,7 @@ Extent ExtentOf(const Quadratic& form) {
 // Cuts the square by one form after the other.
 bool IsCutAway(const float* lines, size_t line_count) {
   // A convex polygon has at most one corner more after each cut.
-  constexpr size_t kMaxCorners = 76;
+  constexpr size_t kMaxCorners = 4 + kMaxPieceLines;
   std::array<std::array<Corner, kMaxCorners>, 2> buffers;
   Corner *corners = buffers[0].data(), *kept = buffers[1].data();
   corners[0] = {0, 0};
@@ -84,7 +84,7 @@ bool ShadowForms::IsNeeded(const Extent& extent, double bound, double& margin) {
 template <size_t kSize>
 void ShadowForms::Push(const std::array<double, kSize>& form) {
   if constexpr (kSize == kLinearSize) {
-    if (piece_lines_ == kMaxLines) {
+    if (piece_lines_ == kMaxPieceLines) {
       is_valid_ = false;
       return;
     }

@@ -67,7 +67,11 @@ inline constexpr double kFormRounding = 0x1p-19;
 // rounds by far less than one.
 inline constexpr double kCut = 2;
 
+// Linear forms of a piece, as ShadowForms adds them.
+inline constexpr uint8_t kMaxPieceLines = 72;
+
 // Whether nothing of the square is left below kCut of so many linear forms, one after the other.
+// May be false where there are more than kMaxPieceLines of them.
 bool IsCutAway(const float* lines, size_t count);
 
 // Adds the pieces of one object's shadow to `coefficients`.
@@ -95,12 +99,9 @@ class ShadowForms {
   void Push(const std::array<double, kSize>& form);
   bool IsEmpty() const;
 
-  // Linear forms of a piece.
-  static constexpr uint8_t kMaxLines = 72;
-
   std::vector<float>& coefficients_;
   // Those of all pieces so far; what lies beyond size_ is not set.
-  std::array<float, kMaxShadowPieces*(kMaxLines* kLinearSize + kQuadraticSize)> forms_;
+  std::array<float, kMaxShadowPieces*(kMaxPieceLines* kLinearSize + kQuadraticSize)> forms_;
   size_t size_ = 0, piece_begin_ = 0;
   // Of the function: its pieces, of each the number of linear forms, and as bits which are squared.
   size_t pieces_ = 0;
